@@ -1,0 +1,43 @@
+#include "bandlimit/color/depth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bandlimit/core/error.h"
+
+namespace bandlimit {
+namespace {
+
+constexpr std::array depths{Depth::u8, Depth::u16, Depth::f16, Depth::f32};
+constexpr std::array<std::string_view, depths.size()> names{"u8", "u16", "f16", "f32"};
+
+double code_of(double value, double largest) {
+    return std::isfinite(value) ? std::floor(std::clamp(value, 0.0, 1.0) * largest + 0.5) : 0;
+}
+
+}  // namespace
+
+std::span<const Depth> all_depths() { return depths; }
+
+std::string_view name_of(Depth depth) { return names[static_cast<std::size_t>(depth)]; }
+
+Depth parse_depth(std::string_view name) {
+    for (const Depth depth : depths)
+        if (name_of(depth) == name) return depth;
+    fail("depth \"", name, "\" is unknown; choose u8, u16, f16 or f32");
+}
+
+std::size_t size_of(Depth depth) { return depth == Depth::u8 ? 1 : depth == Depth::f32 ? 4 : 2; }
+
+AnyConstView as_const(const AnyView& view) {
+    return std::visit([](auto v) -> AnyConstView { return View<const std::remove_pointer_t<decltype(v.data)>>(v); },
+                      view);
+}
+
+Depth depth_of(const AnyConstView& view) { return depths[view.index()]; }
+
+std::uint8_t to_u8(double value) { return static_cast<std::uint8_t>(code_of(value, 255)); }
+std::uint16_t to_u16(double value) { return static_cast<std::uint16_t>(code_of(value, 65535)); }
+
+}  // namespace bandlimit

@@ -1,0 +1,42 @@
+// The numbers that files store, and their way to float and back.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "bandlimit/color/half.h"
+#include "bandlimit/core/view.h"
+
+namespace bandlimit {
+
+/// How a stored sample is written down. Integers hold [0, 1]: code / 255 or code / 65535.
+enum class Depth { u8, u16, f16, f32 };
+
+std::span<const Depth> all_depths();
+std::string_view name_of(Depth depth);
+/// Throws Error, listing the names.
+Depth parse_depth(std::string_view name);
+constexpr bool is_integer(Depth depth) { return depth == Depth::u8 || depth == Depth::u16; }
+/// Bytes of one sample.
+std::size_t size_of(Depth depth);
+
+/// A view of samples whose depth is known at run time; std::visit reaches the typed one.
+using AnyView = std::variant<View<std::uint8_t>, View<std::uint16_t>, View<Half>, View<float>>;
+using AnyConstView = std::variant<View<const std::uint8_t>, View<const std::uint16_t>, View<const Half>,
+                                  View<const float>>;
+
+/// The same samples, read only.
+AnyConstView as_const(const AnyView& view);
+Depth depth_of(const AnyConstView& view);
+
+/// Code to value: exact for 0 and the largest code, else correctly rounded.
+inline float from_code(std::uint8_t code) { return static_cast<float>(code) / 255.0f; }
+inline float from_code(std::uint16_t code) { return static_cast<float>(code) / 65535.0f; }
+
+/// Value to code: clamped to [0, 1] and rounded to nearest. What is not finite becomes 0.
+std::uint8_t to_u8(double value);
+std::uint16_t to_u16(double value);
+
+}  // namespace bandlimit

@@ -1,0 +1,39 @@
+// From stored samples to what filters work on, and back, a row at a time.
+#pragma once
+#include <span>
+
+#include "bandlimit/color/depth.h"
+#include "bandlimit/color/transfer.h"
+
+namespace bandlimit {
+
+/// What the stored samples of an image mean.
+struct Encoding {
+    Transfer transfer = Transfer::linear;  ///< of every channel but alpha
+    int alpha = -1;                        ///< the channel that is coverage, or -1
+    bool associated = false;               ///< colour is stored multiplied by alpha
+};
+
+/// Reads row `y` of `image` as linear light, channels interleaved, into `row`.
+///
+/// shapes   row [width * channels]
+/// range    any stored value; integers become [0, 1]
+/// `premultiplied` asks for colour multiplied by alpha; what is stored so already stays so in either case
+/// cost     a table look-up per sample of u8 and u16
+void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied, std::span<float> row);
+
+/// Writes `row`, which decode_row with the same `premultiplied` could have read, to row `y` of `image`.
+///
+/// Integers are clamped and rounded to the nearest code of the exact transfer function; what is not finite becomes 0.
+/// Where colour is divided by alpha, zero alpha gives zero colour.
+/// shapes   row [width * channels]
+/// returns  whether a value that is not finite became the code 0
+bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& image, int y, const Encoding& stored);
+
+/// Lays `row` (channels interleaved, alpha among them) over an opaque colour, and drops alpha.
+///
+/// shapes   row [width * channels], background [channels - 1] in linear light, out [width * (channels - 1)]
+void composite_row(std::span<const float> row, bool premultiplied, int channels, int alpha,
+                   std::span<const float> background, std::span<float> out);
+
+}  // namespace bandlimit

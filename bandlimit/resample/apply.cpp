@@ -1,0 +1,143 @@
+#include "bandlimit/resample/apply.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bandlimit/core/error.h"
+#include "bandlimit/resample/combine.h"
+#include "bandlimit/resample/lines.h"
+
+namespace bandlimit {
+namespace {
+
+void check_shapes(const char* function, const Bank& bank, int inputs, int outputs, bool same_lines) {
+    if (inputs != bank.inputs || outputs != bank.output_count() || !same_lines)
+        fail(function, ": the bank takes ", bank.inputs, " samples to ", bank.output_count(), ", the views ", inputs, " to ",
+             outputs, same_lines ? "" : " with different heights or channels",
+             "; widths must be those of the bank, heights and channels equal");
+}
+
+template <class A, class B>
+bool same_lines(const View<A>& a, const View<B>& b) {
+    return a.height == b.height && a.channels == b.channels;
+}
+
+void check_antiring(double antiring) {
+    if (!(antiring >= 0 && antiring <= 1)) fail("apply: antiring = ", antiring, "; pass 0 (off) to 1 (no overshoot)");
+}
+
+/// The lanes of an image are its samples at one x, in the order (y, channel): row after row if the channels of a pixel
+/// lie together. They are contiguous where a column of pixels is.
+template <class T>
+bool has_contiguous_lanes(const View<T>& v) {
+    if (v.channels == 1) return v.dy == 1 || v.height == 1;
+    return v.dc == 1 && (v.dy == v.channels || v.height == 1);
+}
+
+constexpr int tile_lanes = 32;  // two vectors of 512 bits; 4096 of them are 512 KiB
+
+/// Lanes [begin, end) of an image at every x, side by side: the transposition that lets a horizontal filter run the
+/// vertical loop.
+class Tile {
+public:
+    Tile(int width, int lanes)
+        : lanes_(static_cast<std::size_t>(lanes)), samples_(static_cast<std::size_t>(width) * lanes_) {}
+    float* at(int x) { return samples_.data() + static_cast<std::size_t>(x) * lanes_; }
+
+    void load(View<const float> v, std::ptrdiff_t lane, int count) {
+        for_each_lane(lane, count, v.channels, [&](int y, int c, int k) {
+            const float* from = &v(0, y, c);
+            for (int x = 0; x < v.width; ++x) at(x)[k] = from[x * v.dx];
+        });
+    }
+    void store(View<float> v, std::ptrdiff_t lane, int count) {
+        for_each_lane(lane, count, v.channels, [&](int y, int c, int k) {
+            float* to = &v(0, y, c);
+            for (int x = 0; x < v.width; ++x) to[x * v.dx] = at(x)[k];
+        });
+    }
+
+private:
+    template <class Visit>
+    static void for_each_lane(std::ptrdiff_t lane, int count, int channels, Visit visit) {
+        for (int k = 0; k < count; ++k)
+            visit(static_cast<int>((lane + k) / channels), static_cast<int>((lane + k) % channels), k);
+    }
+
+    std::size_t lanes_;
+    std::vector<float> samples_;
+};
+
+/// Runs lanes [begin, end) through the bank, by way of tiles where a view is not contiguous.
+void apply_lanes(const Bank& bank, IndexRange read, View<const float> src, View<float> dst, float antiring,
+                 std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const bool direct_src = has_contiguous_lanes(src), direct_dst = has_contiguous_lanes(dst);
+    const int step = direct_src && direct_dst ? std::numeric_limits<int>::max() : tile_lanes;
+    const int lanes = static_cast<int>(std::min<std::ptrdiff_t>(step, end - begin));
+    Tile in(direct_src ? 0 : src.width, lanes), out(direct_dst ? 0 : dst.width, lanes);
+    std::vector<float*> to(static_cast<std::size_t>(dst.width));
+    for (std::ptrdiff_t lane = begin; lane < end; lane += lanes) {
+        const int count = static_cast<int>(std::min<std::ptrdiff_t>(lanes, end - lane));
+        if (!direct_src) in.load(src, lane, count);
+        const LineTable from(bank, read, [&](int i) { return direct_src ? &src(i, 0) + lane : in.at(i); });
+        for (int i = 0; i < dst.width; ++i) to[static_cast<std::size_t>(i)] = direct_dst ? &dst(i, 0) + lane : out.at(i);
+        combine(bank, 0, dst.width, antiring, from.at_zero(), to.data(), static_cast<std::size_t>(count));
+        if (!direct_dst) out.store(dst, lane, count);
+    }
+}
+
+}  // namespace
+
+IndexRange indices_read(const Bank& bank, int first, int last) {
+    IndexRange range{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    for (int i = first; i < last; ++i) {
+        range.begin = std::min(range.begin, bank.first(i));
+        range.end = std::max(range.end, bank.first(i) + bank.row_info(i).count);
+    }
+    return range;
+}
+
+void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel, double antiring) {
+    check_shapes("apply", bank, src.width, dst.width, same_lines(src, dst));
+    check_antiring(antiring);
+    const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(src.height) * src.channels;
+    const IndexRange read = indices_read(bank, 0, bank.output_count());
+    parallel_for(lanes, tile_lanes * 4, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        apply_lanes(bank, read, src, dst, static_cast<float>(antiring), begin, end);
+    });
+}
+
+void apply_scalar(const Bank& bank, View<const float> src, View<float> dst, double antiring) {
+    check_shapes("apply_scalar", bank, src.width, dst.width, same_lines(src, dst));
+    check_antiring(antiring);
+    const IndexRange read = indices_read(bank, 0, bank.output_count());
+    for (int c = 0; c < src.channels; ++c)
+        for (int y = 0; y < src.height; ++y) {
+            const LineTable from(bank, read, [&](int i) { return &src(i, y, c); });
+            for (int i = 0; i < dst.width; ++i) {
+                float* const to = &dst(i, y, c);
+                combine_scalar(bank, i, i + 1, static_cast<float>(antiring), from.at_zero(), &to, 1);
+            }
+        }
+}
+
+void apply_adjoint(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel) {
+    check_shapes("apply_adjoint", bank, dst.width, src.width, same_lines(src, dst));
+    parallel_for(static_cast<std::ptrdiff_t>(src.height) * src.channels, 16, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t lane = begin; lane < end; ++lane) {
+            const int y = static_cast<int>(lane / src.channels), c = static_cast<int>(lane % src.channels);
+            for (int x = 0; x < dst.width; ++x) dst(x, y, c) = 0;
+            for (int i = 0; i < src.width; ++i) {
+                const std::span<const float> row = bank.row(i);
+                for (int j = 0; j < static_cast<int>(row.size()); ++j) {
+                    float& to = dst(resolve(bank.first(i) + j, bank.inputs, bank.edge), y, c);
+                    to = std::fma(row[static_cast<std::size_t>(j)], src(i, y, c), to);
+                }
+            }
+        }
+    });
+}
+
+}  // namespace bandlimit
