@@ -12,8 +12,8 @@ namespace {
 constexpr std::array depths{Depth::u8, Depth::u16, Depth::f16, Depth::f32};
 constexpr std::array<std::string_view, depths.size()> names{"u8", "u16", "f16", "f32"};
 
-double code_of(double value, double largest) {
-    return std::isfinite(value) ? std::floor(std::clamp(value, 0.0, 1.0) * largest + 0.5) : 0;
+int code_of(double value, int largest) {
+    return std::isfinite(value) ? static_cast<int>(std::clamp(value, 0.0, 1.0) * largest + 0.5) : 0;
 }
 
 }  // namespace
@@ -29,6 +29,24 @@ Depth parse_depth(std::string_view name) {
 }
 
 std::size_t size_of(Depth depth) { return depth == Depth::u8 ? 1 : depth == Depth::f32 ? 4 : 2; }
+
+AnyImage make_image(Depth depth, int width, int height, int channels, Layout layout) {
+    switch (depth) {
+        case Depth::u8: return Image<std::uint8_t>(width, height, channels, layout);
+        case Depth::u16: return Image<std::uint16_t>(width, height, channels, layout);
+        case Depth::f16: return Image<Half>(width, height, channels, layout);
+        case Depth::f32: break;
+    }
+    return Image<float>(width, height, channels, layout);
+}
+
+AnyView view_of(AnyImage& image) {
+    return std::visit([](auto& i) -> AnyView { return i.view(); }, image);
+}
+
+AnyView rows_of(const AnyView& view, int first, int count) {
+    return std::visit([&](auto v) -> AnyView { return cropped(v, 0, first, v.width, count); }, view);
+}
 
 AnyConstView as_const(const AnyView& view) {
     return std::visit([](auto v) -> AnyConstView { return View<const std::remove_pointer_t<decltype(v.data)>>(v); },

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "bandlimit/color/half.h"
-#include "bandlimit/core/view.h"
+#include "bandlimit/core/image.h"
 
 namespace bandlimit {
 
@@ -24,11 +24,19 @@ std::size_t size_of(Depth depth);
 
 /// A view of samples whose depth is known at run time; std::visit reaches the typed one.
 using AnyView = std::variant<View<std::uint8_t>, View<std::uint16_t>, View<Half>, View<float>>;
-using AnyConstView = std::variant<View<const std::uint8_t>, View<const std::uint16_t>, View<const Half>,
-                                  View<const float>>;
+using AnyConstView =
+    std::variant<View<const std::uint8_t>, View<const std::uint16_t>, View<const Half>, View<const float>>;
+
+using AnyImage = std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<Half>, Image<float>>;
+
+/// A new image of the given depth.
+AnyImage make_image(Depth depth, int width, int height, int channels, Layout layout = Layout::interleaved);
+AnyView view_of(AnyImage& image);
 
 /// The same samples, read only.
 AnyConstView as_const(const AnyView& view);
+/// Rows [first, first + count) of a view.
+AnyView rows_of(const AnyView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);
 
 /// Code to value: exact for 0 and the largest code, else correctly rounded.

@@ -106,7 +106,9 @@ void store_linear(float& to, float v) { to = v; }
 
 template <class T>
 struct SrgbStorer {
-    void operator()(T& to, float v) const { store_linear(to, static_cast<float>(linear_to_srgb(static_cast<double>(v)))); }
+    void operator()(T& to, float v) const {
+        store_linear(to, static_cast<float>(linear_to_srgb(static_cast<double>(v))));
+    }
 };
 template <class T>
     requires std::is_integral_v<T>
@@ -117,7 +119,8 @@ struct SrgbStorer<T> {
 
 void check_row(std::size_t samples, int width, int channels, const char* function) {
     if (samples != static_cast<std::size_t>(width) * static_cast<std::size_t>(channels))
-        fail(function, ": the row holds ", samples, " samples; ", width, " pixels of ", channels, " channels are needed");
+        fail(function, ": the row holds ", samples, " samples; ", width, " pixels of ", channels,
+             " channels are needed");
 }
 
 template <class T>
@@ -180,8 +183,9 @@ bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& i
             check_row(row.size(), view.width, view.channels, "encode_row");
             if (stored.alpha >= 0 && premultiplied != stored.associated) {
                 std::vector<float> changed(row.begin(), row.end());
-                with_alpha(changed, static_cast<std::size_t>(view.channels), static_cast<std::size_t>(stored.alpha),
-                           [&](float colour, float alpha) { return premultiplied ? divided(colour, alpha) : colour * alpha; });
+                with_alpha(
+                    changed, static_cast<std::size_t>(view.channels), static_cast<std::size_t>(stored.alpha),
+                    [&](float colour, float alpha) { return premultiplied ? divided(colour, alpha) : colour * alpha; });
                 encode_typed(changed, view, y, stored);
             } else {
                 encode_typed(row, view, y, stored);

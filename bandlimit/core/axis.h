@@ -24,9 +24,7 @@ struct Axis {
     /// The fractional index of what lies at x: the inverse of position().
     double index(double x) const { return (x - begin) / pitch() - 0.5; }
     /// The axis of the cells [first, last) of this one.
-    Axis cells(int first, int last) const {
-        return {last - first, begin + first * pitch(), begin + last * pitch()};
-    }
+    Axis cells(int first, int last) const { return {last - first, begin + first * pitch(), begin + last * pitch()}; }
 };
 
 /// An axis of `count` samples whose first and last sample centres coincide with those of `source` ("align_corners"

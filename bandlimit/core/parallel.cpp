@@ -54,10 +54,9 @@ void run(std::ptrdiff_t count, std::ptrdiff_t grain, int threads, const Body& bo
     namespace tbb = oneapi::tbb;
     tbb::task_arena arena(threads);
     arena.execute([&] {
-        tbb::parallel_for(
-            tbb::blocked_range<std::ptrdiff_t>(0, (count + grain - 1) / grain), [&](const auto& range) {
-                body(range.begin() * grain, std::min(range.end() * grain, count));
-            });
+        tbb::parallel_for(tbb::blocked_range<std::ptrdiff_t>(0, (count + grain - 1) / grain), [&](const auto& range) {
+            body(range.begin() * grain, std::min(range.end() * grain, count));
+        });
     });
 }
 #endif

@@ -17,11 +17,7 @@ struct View {
     std::ptrdiff_t dx = 1, dy = 0, dc = 0;
 
     T& operator()(int x, int y, int c = 0) const { return data[x * dx + y * dy + c * dc]; }
-    operator View<const T>() const
-        requires(!std::is_const_v<T>)
-    {
-        return {data, width, height, channels, dx, dy, dc};
-    }
+    operator View<const T>() const requires(!std::is_const_v<T>) { return {data, width, height, channels, dx, dy, dc}; }
 };
 
 template <class T>

@@ -27,8 +27,7 @@ std::vector<double> integers_below(double radius) {
 }
 
 void check_lobes(const char* function, int lobes) {
-    if (lobes < 1 || lobes > 1000)
-        fail(function, ": lobes = ", lobes, "; pass 1 to 1000 (3 is the usual choice)");
+    if (lobes < 1 || lobes > 1000) fail(function, ": lobes = ", lobes, "; pass 1 to 1000 (3 is the usual choice)");
 }
 
 void check_radius(const char* function, double radius) {
@@ -77,7 +76,8 @@ Kernel quadratic_interpolating() {
 
 Kernel cubic(double b, double c) {
     if (!(std::abs(b) <= 100 && std::abs(c) <= 100))
-        fail("cubic: B = ", b, ", C = ", c, "; pass numbers of at most 100 (Mitchell 1/3 and 1/3, Catmull-Rom 0 and 0.5)");
+        fail("cubic: B = ", b, ", C = ", c,
+             "; pass numbers of at most 100 (Mitchell 1/3 and 1/3, Catmull-Rom 0 and 0.5)");
     const auto value = [b, c](double x) {
         x = std::abs(x);
         if (x < 1) return (((12 - 9 * b - 6 * c) * x + (-18 + 12 * b + 6 * c)) * x * x + 6 - 2 * b) / 6;
@@ -148,17 +148,13 @@ Kernel kaiser(double radius, double beta) {
 Kernel jinc_lanczos(int lobes) {
     check_lobes("jinc", lobes);
     const double radius = jinc_zero(lobes), scale = jinc_zero(1) / radius;
-    const auto value = [radius, scale](double r) {
-        return std::abs(r) < radius ? jinc(r) * jinc(r * scale) : 0;
-    };
+    const auto value = [radius, scale](double r) { return std::abs(r) < radius ? jinc(r) * jinc(r * scale) : 0; };
     return {"jinc" + std::to_string(lobes), radius, value, Kernel::Form::radial, integers_below(radius)};
 }
 
 Kernel jinc_lanczos_unscaled(int lobes) {
     check_lobes("jinc-unscaled", lobes);
-    const auto value = [lobes](double r) {
-        return inside(r, lobes) * std::numbers::pi * jinc(r) * jinc(r / lobes);
-    };
+    const auto value = [lobes](double r) { return inside(r, lobes) * std::numbers::pi * jinc(r) * jinc(r / lobes); };
     return {"jinc" + std::to_string(lobes) + "-unscaled", double(lobes), value, Kernel::Form::radial,
             integers_below(lobes)};
 }

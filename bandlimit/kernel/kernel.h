@@ -23,7 +23,7 @@ struct Kernel {
 
     std::string name;                     ///< as parse_kernel() reads it
     double radius = 0;                    ///< exact: value is 0 beyond
-    std::function<double(double)> value;  ///< any finite argument; at a jump the mean of both sides
+    std::function<double(double)> value;  ///< any finite argument; at a jump the mean of both sides, or as published
     Form form = Form::separable;
     std::vector<double> knots;  ///< where in (0, radius) value or a derivative of it jumps; for quadrature
 };
@@ -35,22 +35,24 @@ Kernel tent();     ///< radius 1: linear interpolation
 Kernel quadratic_bspline();        ///< radius 3/2, smooth, approximating
 Kernel quadratic_interpolating();  ///< radius 3/2, Dodgson 1997, "Quadratic interpolation for image resampling", r = 1
 
-/// radius 2: the family of Mitchell & Netravali 1988, eq. 8. (1, 0) B-spline, (0, 1/2) Catmull-Rom, (1/3, 1/3) Mitchell.
+/// radius 2: the family of Mitchell & Netravali 1988, eq. 8. (1, 0) B-spline, (0, 1/2) Catmull-Rom, (1/3, 1/3)
+/// Mitchell.
 Kernel cubic(double b, double c);
 Kernel bspline();
 Kernel catmull_rom();
 Kernel mitchell();
 
-Kernel lanczos(int lobes);                      ///< radius lobes >= 1: sinc(x) sinc(x / lobes)
-Kernel truncated_sinc(double radius);           ///< radius > 0: sinc(x), cut off
-Kernel gaussian(double sigma);                  ///< exp(-x^2 / (2 sigma^2)), radius 4 sigma (3.4e-4 of the peak is cut off)
-Kernel blackman_harris();                       ///< exp(-2.29 x^2), a fit of the window below, cut at the same radius
-Kernel blackman_harris_window();                ///< radius 1.65: the 4-term window, 3.3 pitches wide
-Kernel kaiser(double radius, double beta);      ///< sinc(x) I0(beta sqrt(1 - (x/radius)^2)) / I0(beta)
+Kernel lanczos(int lobes);                  ///< radius lobes >= 1: sinc(x) sinc(x / lobes)
+Kernel truncated_sinc(double radius);       ///< radius > 0: sinc(x), cut off
+Kernel gaussian(double sigma);              ///< exp(-x^2 / (2 sigma^2)), radius 4 sigma (3.4e-4 of the peak is cut off)
+Kernel blackman_harris();                   ///< exp(-2.29 x^2), a fit of the window below, cut at the same radius
+Kernel blackman_harris_window();            ///< radius 1.65: the 4-term window, 3.3 pitches wide
+Kernel kaiser(double radius, double beta);  ///< sinc(x) I0(beta sqrt(1 - (x/radius)^2)) / I0(beta)
 
-Kernel jinc_lanczos(int lobes);           ///< radial: jinc(r) jinc(r z1/zN), radius the N-th zero zN of jinc; continuous
-Kernel jinc_lanczos_unscaled(int lobes);  ///< radial: pi jinc(r) jinc(r / N), radius N; jumps there (-1.2 % of the peak for 2)
-Kernel radial_lanczos(int lobes);         ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
+Kernel jinc_lanczos(int lobes);  ///< radial: jinc(r) jinc(r z1/zN), radius the N-th zero zN of jinc; continuous
+Kernel jinc_lanczos_unscaled(
+    int lobes);                    ///< radial: pi jinc(r) jinc(r / N), radius N; jumps there (-1.2 % of the peak for 2)
+Kernel radial_lanczos(int lobes);  ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
 
 /// The kernel that `name` describes: a name of kernel_list(), with parameters after colons ("cubic:0.3:0.35"), or an
 /// alias ("bilinear").

@@ -27,7 +27,8 @@ constexpr std::array kernels{
     KernelInfo{"kaiser:R:BETA", "kaiser:4:6", "sinc of radius R in a Kaiser window; BETA trades sharpness for leakage"},
     KernelInfo{"jincN", "jinc3", "radial: jinc windowed by its main lobe, radius at its N-th zero [EWA Lanczos]"},
     KernelInfo{"jincN-unscaled", "jinc2-unscaled", "radial: pi jinc(r) jinc(r/N) for r < N; jumps at its edge"},
-    KernelInfo{"radial-lanczosN", "radial-lanczos2", "radial and WRONG: 1D Lanczos of the distance; sharpens and aliases"},
+    KernelInfo{"radial-lanczosN", "radial-lanczos2",
+               "radial and WRONG: 1D Lanczos of the distance; sharpens and aliases"},
 };
 
 std::string names() {
@@ -41,13 +42,20 @@ struct Alias {
     std::string_view word, meaning;
 };
 constexpr std::array aliases{
-    Alias{"point", "nearest"},        Alias{"area", "box"},
-    Alias{"linear", "tent"},          Alias{"bilinear", "tent"},
-    Alias{"triangle", "tent"},        Alias{"quadratic-bspline", "quadratic"},
-    Alias{"biquadratic", "quadratic"}, Alias{"b-spline", "bspline"},
-    Alias{"cubic-bspline", "bspline"}, Alias{"catrom", "catmull-rom"},
-    Alias{"catmullrom", "catmull-rom"}, Alias{"lanczos", "lanczos3"},
-    Alias{"ewa-lanczos", "jinc3"},    Alias{"jinc", "jinc3"},
+    Alias{"point", "nearest"},
+    Alias{"area", "box"},
+    Alias{"linear", "tent"},
+    Alias{"bilinear", "tent"},
+    Alias{"triangle", "tent"},
+    Alias{"quadratic-bspline", "quadratic"},
+    Alias{"biquadratic", "quadratic"},
+    Alias{"b-spline", "bspline"},
+    Alias{"cubic-bspline", "bspline"},
+    Alias{"catrom", "catmull-rom"},
+    Alias{"catmullrom", "catmull-rom"},
+    Alias{"lanczos", "lanczos3"},
+    Alias{"ewa-lanczos", "jinc3"},
+    Alias{"jinc", "jinc3"},
 };
 
 /// Words that mean different kernels to different people.
@@ -147,7 +155,8 @@ std::span<const KernelInfo> kernel_list() { return kernels; }
 
 Kernel parse_kernel(std::string_view name) {
     for (const Ambiguity& a : ambiguities)
-        if (a.word == name) fail("kernel \"", name, "\" means different kernels in different programs; choose ", a.advice);
+        if (a.word == name)
+            fail("kernel \"", name, "\" means different kernels in different programs; choose ", a.advice);
     for (const Alias& a : aliases)
         if (a.word == name) name = a.meaning;
 

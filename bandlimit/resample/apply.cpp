@@ -14,8 +14,8 @@ namespace {
 
 void check_shapes(const char* function, const Bank& bank, int inputs, int outputs, bool same_lines) {
     if (inputs != bank.inputs || outputs != bank.output_count() || !same_lines)
-        fail(function, ": the bank takes ", bank.inputs, " samples to ", bank.output_count(), ", the views ", inputs, " to ",
-             outputs, same_lines ? "" : " with different heights or channels",
+        fail(function, ": the bank takes ", bank.inputs, " samples to ", bank.output_count(), ", the views ", inputs,
+             " to ", outputs, same_lines ? "" : " with different heights or channels",
              "; widths must be those of the bank, heights and channels equal");
 }
 
@@ -82,7 +82,8 @@ void apply_lanes(const Bank& bank, IndexRange read, View<const float> src, View<
         const int count = static_cast<int>(std::min<std::ptrdiff_t>(lanes, end - lane));
         if (!direct_src) in.load(src, lane, count);
         const LineTable from(bank, read, [&](int i) { return direct_src ? &src(i, 0) + lane : in.at(i); });
-        for (int i = 0; i < dst.width; ++i) to[static_cast<std::size_t>(i)] = direct_dst ? &dst(i, 0) + lane : out.at(i);
+        for (int i = 0; i < dst.width; ++i)
+            to[static_cast<std::size_t>(i)] = direct_dst ? &dst(i, 0) + lane : out.at(i);
         combine(bank, 0, dst.width, antiring, from.at_zero(), to.data(), static_cast<std::size_t>(count));
         if (!direct_dst) out.store(dst, lane, count);
     }
@@ -125,19 +126,20 @@ void apply_scalar(const Bank& bank, View<const float> src, View<float> dst, doub
 
 void apply_adjoint(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel) {
     check_shapes("apply_adjoint", bank, dst.width, src.width, same_lines(src, dst));
-    parallel_for(static_cast<std::ptrdiff_t>(src.height) * src.channels, 16, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        for (std::ptrdiff_t lane = begin; lane < end; ++lane) {
-            const int y = static_cast<int>(lane / src.channels), c = static_cast<int>(lane % src.channels);
-            for (int x = 0; x < dst.width; ++x) dst(x, y, c) = 0;
-            for (int i = 0; i < src.width; ++i) {
-                const std::span<const float> row = bank.row(i);
-                for (int j = 0; j < static_cast<int>(row.size()); ++j) {
-                    float& to = dst(resolve(bank.first(i) + j, bank.inputs, bank.edge), y, c);
-                    to = std::fma(row[static_cast<std::size_t>(j)], src(i, y, c), to);
-                }
-            }
-        }
-    });
+    parallel_for(static_cast<std::ptrdiff_t>(src.height) * src.channels, 16, parallel,
+                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                     for (std::ptrdiff_t lane = begin; lane < end; ++lane) {
+                         const int y = static_cast<int>(lane / src.channels), c = static_cast<int>(lane % src.channels);
+                         for (int x = 0; x < dst.width; ++x) dst(x, y, c) = 0;
+                         for (int i = 0; i < src.width; ++i) {
+                             const std::span<const float> row = bank.row(i);
+                             for (int j = 0; j < static_cast<int>(row.size()); ++j) {
+                                 float& to = dst(resolve(bank.first(i) + j, bank.inputs, bank.edge), y, c);
+                                 to = std::fma(row[static_cast<std::size_t>(j)], src(i, y, c), to);
+                             }
+                         }
+                     }
+                 });
 }
 
 }  // namespace bandlimit

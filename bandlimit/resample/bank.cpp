@@ -2,85 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <numeric>
-#include <optional>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/resample/mapping.h"
 
 namespace bandlimit {
 namespace {
-
-constexpr double position_limit = 1 << 30;  // so that indices fit an int with room for any radius
-
-/// p / q, with q >= 1.
-struct Ratio {
-    std::int64_t p = 0, q = 1;
-};
-
-/// The simplest fraction within a few roundings of r, if there is one with a modest denominator.
-std::optional<Ratio> as_ratio(double r) {
-    constexpr double tolerance = 1e-13;
-    constexpr std::int64_t limit = 1 << 20;
-    // Continued fraction: each convergent is the best approximation for its denominator.
-    std::int64_t p0 = 0, q0 = 1, p1 = 1, q1 = 0;
-    double rest = r;
-    while (std::abs(rest) < position_limit) {
-        const double whole = std::floor(rest);
-        const auto a = static_cast<std::int64_t>(whole);
-        const std::int64_t p = a * p1 + p0, q = a * q1 + q0;
-        if (q > limit || std::abs(p) > std::int64_t{1} << 30) return {};
-        if (std::abs(static_cast<double>(p) / static_cast<double>(q) - r) <= tolerance * std::abs(r)) return Ratio{p, q};
-        p0 = p1, q0 = q1, p1 = p, q1 = q;
-        rest = 1 / (rest - whole);
-    }
-    return {};
-}
-
-/// A fractional source index, in two parts so that equal phases have equal bits.
-struct Position {
-    std::int64_t whole = 0;
-    double fraction = 0;     ///< in [0, 1)
-    std::int64_t phase = 0;  ///< equal for outputs with equal fractions
-};
-
-/// Where the outputs lie in source samples: t(i) = shift + (i + 1/2) step - 1/2 for the cell centres of both axes.
-class Mapping {
-public:
-    Mapping(const Axis& src, const Axis& dst) : src_(src), dst_(dst), step_(dst.pitch() / src.pitch()) {
-        ratio_ = as_ratio(step_);
-        if (!ratio_) return;
-        // All positions are multiples of 1/(2q), counted from the begin of dst.
-        units_ = 2 * ratio_->q;
-        const double shift = (dst.begin - src.begin) / src.pitch() * static_cast<double>(units_);
-        const double snapped = std::round(shift);
-        const bool exact = std::abs(shift - snapped) <= 1e-12 * std::max(1.0, std::abs(shift));
-        shift_ = static_cast<std::int64_t>(exact ? snapped : std::floor(shift));
-        shift_fraction_ = exact ? 0 : shift - std::floor(shift);
-    }
-
-    double step() const { return step_; }
-    bool is_whole_step(int factor) const { return ratio_ && ratio_->p == factor && ratio_->q == 1; }
-
-    Position operator()(int i) const {
-        if (!ratio_) {
-            const double t = src_.index(dst_.position(i)), whole = std::floor(t);
-            return {static_cast<std::int64_t>(whole), t - whole, i};
-        }
-        const std::int64_t at = (2 * std::int64_t{i} + 1) * ratio_->p - ratio_->q + shift_;
-        const std::int64_t whole = at >= 0 ? at / units_ : -((-at + units_ - 1) / units_);
-        const std::int64_t phase = at - whole * units_;
-        return {whole, (static_cast<double>(phase) + shift_fraction_) / static_cast<double>(units_), phase};
-    }
-
-private:
-    Axis src_, dst_;
-    double step_;
-    std::optional<Ratio> ratio_;
-    std::int64_t units_ = 0, shift_ = 0;
-    double shift_fraction_ = 0;
-};
 
 /// Weights of one phase, before any edge: sample whole + first + j has weights[j].
 struct PhaseRow {
@@ -98,7 +27,9 @@ void trim_zeros(PhaseRow& row) {
     row.weights = {begin, end};
 }
 
-double overlap(double a0, double a1, double b0, double b1) { return std::max(0.0, std::min(a1, b1) - std::max(a0, b0)); }
+double overlap(double a0, double a1, double b0, double b1) {
+    return std::max(0.0, std::min(a1, b1) - std::max(a0, b0));
+}
 
 PhaseRow sampled_row(const Kernel& kernel, double fraction, double stretch) {
     PhaseRow row;
@@ -132,16 +63,6 @@ void append_rounded(std::vector<float>& to, std::span<const double> weights) {
         carry += w - static_cast<double>(rounded);
         to.push_back(rounded);
     }
-}
-
-void check_axes(const Axis& src, const Axis& dst) {
-    if (src.count < 1 || dst.count < 1)
-        fail("make_bank: src.count = ", src.count, ", dst.count = ", dst.count, "; both must be at least 1");
-    const double step = dst.pitch() / src.pitch();
-    const double first = src.index(dst.position(0)), last = src.index(dst.position(dst.count - 1));
-    if (!(std::isfinite(step) && step != 0 && std::abs(first) < position_limit && std::abs(last) < position_limit))
-        fail("make_bank: intervals [", src.begin, ", ", src.end, "] and [", dst.begin, ", ", dst.end,
-             "]; both must be finite and not empty, and lie together");
 }
 
 /// Collects the rows of a bank; `sum_kept` is what renormalize restores.
@@ -204,30 +125,30 @@ PhaseRow row_of(const Taps& taps) {
 
 void normalise(PhaseRow& row, const Kernel& kernel) {
     const double sum = sum_of(row.weights);
-    if (!(std::abs(sum) > 1e-9)) fail("make_bank: the weights of ", kernel.name, " sum to ", sum, " and cannot be normalised");
+    if (!(std::abs(sum) > 1e-9))
+        fail("make_bank: the weights of ", kernel.name, " sum to ", sum, " and cannot be normalised");
     if (sum == 1) return;
     for (double& w : row.weights) w /= sum;
 }
 
 void check_separable(const Kernel& kernel) {
     if (is_radial(kernel))
-        fail("make_bank: ", kernel.name, " is radial, not separable; resample with radial.h, or choose a separable kernel");
+        fail("make_bank: ", kernel.name,
+             " is radial, not separable; resample with radial.h, or choose a separable kernel");
 }
 
 }  // namespace
 
 Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge) {
     check_separable(kernel);
-    check_axes(src, dst);
     const Mapping mapping(src, dst);
-    const double stretch = std::max(1.0, std::abs(mapping.step()));
     Builder builder(src.count, dst.count, edge);
     std::map<std::int64_t, PhaseRow> known;
     for (int i = 0; i < dst.count; ++i) {
         const Position at = mapping(i);
         auto [entry, is_new] = known.try_emplace(at.phase);
         if (is_new) {
-            entry->second = sampled_row(kernel, at.fraction, stretch);
+            entry->second = sampled_row(kernel, at.fraction, mapping.stretch());
             normalise(entry->second, kernel);
         }
         builder.add(at, entry->second);
@@ -236,8 +157,8 @@ Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge
 }
 
 Bank make_bank(const Taps& taps, const Axis& src, const Axis& dst, Edge edge) {
-    check_axes(src, dst);
-    if (taps.weights.empty() || !std::all_of(taps.weights.begin(), taps.weights.end(), [](double w) { return std::isfinite(w); }))
+    if (taps.weights.empty() ||
+        !std::all_of(taps.weights.begin(), taps.weights.end(), [](double w) { return std::isfinite(w); }))
         fail("make_bank: taps need at least one weight, and finite ones");
     const Mapping mapping(src, dst);
     const Position start = mapping(0);

@@ -36,7 +36,9 @@ struct Bank {
 
     int output_count() const { return static_cast<int>(outputs.size()); }
     int first(int output) const { return outputs[static_cast<std::size_t>(output)].first; }
-    const Row& row_info(int output) const { return rows[static_cast<std::size_t>(outputs[static_cast<std::size_t>(output)].row)]; }
+    const Row& row_info(int output) const {
+        return rows[static_cast<std::size_t>(outputs[static_cast<std::size_t>(output)].row)];
+    }
     std::span<const float> row(int output) const {
         const Row& r = row_info(output);
         return std::span(weights).subspan(r.offset, static_cast<std::size_t>(r.count));

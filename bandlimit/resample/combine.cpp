@@ -19,7 +19,8 @@ float limited(float sum, const float* const* near, int count, std::size_t k, flo
 
 }  // namespace
 
-void combine_scalar(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
+void combine_scalar(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out,
+                    std::size_t length) {
     for (int i = begin; i < end; ++i) {
         const std::span<const float> row = bank.row(i);
         const Bank::Row& info = bank.row_info(i);

@@ -20,7 +20,8 @@ using Lines = float* const*;
 /// range    any float; a NaN reaches only the k where it stands
 /// error    |err| <= dot_bound(count, sum |w x|); same bits on every instruction set with fused multiply-add
 /// cost     (end - begin) * count * length multiply-adds
-void combine_scalar(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length);
+void combine_scalar(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out,
+                    std::size_t length);
 
 /// The same by vectors of the widest instruction set that this machine has, chosen at run time.
 void combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length);

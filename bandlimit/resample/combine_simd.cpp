@@ -49,11 +49,13 @@ HWY_INLINE void CombineAt(D d, const Row& row, float* HWY_RESTRICT out, std::siz
     const std::size_t n = hn::Lanes(d);
     V sum[kUnroll];
     const V first = hn::Set(d, row.weights[0]);
-    for (int u = 0; u < kUnroll; ++u) sum[u] = hn::Mul(first, hn::LoadU(d, row.taps[0] + k + static_cast<std::size_t>(u) * n));
+    for (int u = 0; u < kUnroll; ++u)
+        sum[u] = hn::Mul(first, hn::LoadU(d, row.taps[0] + k + static_cast<std::size_t>(u) * n));
     for (int j = 1; j < row.count; ++j) {
         const V w = hn::Set(d, row.weights[j]);
         const float* line = row.taps[j] + k;
-        for (int u = 0; u < kUnroll; ++u) sum[u] = hn::MulAdd(w, hn::LoadU(d, line + static_cast<std::size_t>(u) * n), sum[u]);
+        for (int u = 0; u < kUnroll; ++u)
+            sum[u] = hn::MulAdd(w, hn::LoadU(d, line + static_cast<std::size_t>(u) * n), sum[u]);
     }
     for (int u = 0; u < kUnroll; ++u) {
         const std::size_t at = k + static_cast<std::size_t>(u) * n;
@@ -75,8 +77,12 @@ HWY_INLINE void CombineRow(const Row& row, float* HWY_RESTRICT out, std::size_t 
 void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
     for (int i = begin; i < end; ++i) {
         const Bank::Row& info = bank.row_info(i);
-        const Row row{bank.weights.data() + info.offset, lines + bank.first(i), info.count, info.near_begin,
-                      info.near_count, antiring};
+        const Row row{bank.weights.data() + info.offset,
+                      lines + bank.first(i),
+                      info.count,
+                      info.near_begin,
+                      info.near_count,
+                      antiring};
         CombineRow(row, out[i - begin], length);
     }
 }

@@ -14,8 +14,8 @@ struct IndexRange {
 };
 IndexRange indices_read(const Bank& bank, int first, int last);
 
-/// A table of line pointers that may be indexed by any index in a range: edges cost one entry each, and no branch in the
-/// inner loop.
+/// A table of line pointers that may be indexed by any index in a range: edges cost one entry each, and no branch in
+/// the inner loop.
 class LineTable {
 public:
     /// line_of(i) gives the line of the stored sample i; each index is resolved by the bank's edge.

@@ -1,0 +1,101 @@
+// What the verbs share: options, errors, notes, progress.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "bandlimit/color/depth.h"
+#include "bandlimit/core/edge.h"
+#include "bandlimit/core/parallel.h"
+#include "bandlimit/io/image_file.h"
+
+namespace bandlimit::app {
+
+/// Something that the command line alone shows to be wrong: exit 2. While the command line is parsed and checked, an
+/// Error of the library means the same; once a verb runs, every other exception is exit 1.
+struct UsageError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The program: verbs add themselves to `cli` and name what to run.
+struct Program {
+    CLI::App cli{"bandlimit: sampling done right, for graphics", "bandlimit"};
+    std::function<void()> selected;  ///< set by parsing
+
+    /// Adds a verb; `example` is one command line that works as pasted.
+    CLI::App* add_verb(const std::string& name, const std::string& summary, const std::string& example);
+    /// `check` sees the parsed options and throws Error or UsageError (exit 2); `run` does the work.
+    void on(CLI::App* verb, std::function<void()> check, std::function<void()> run);
+};
+
+void add_info(Program& program);
+void add_resize(Program& program);
+void add_pattern(Program& program);
+void add_compare(Program& program);
+void add_analyze(Program& program);
+void add_tour(Program& program);
+
+/// Options that many verbs have, with one wording.
+CLI::Option* add_space(CLI::App* verb, Space& space);
+CLI::Option* add_depth(CLI::App* verb, std::optional<Depth>& depth);
+CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge);
+CLI::Option* add_threads(CLI::App* verb, Parallel& parallel);
+CLI::Option* add_json(CLI::App* verb, bool& json);
+CLI::Option* add_quiet(CLI::App* verb);
+
+struct Size {
+    int width = 0, height = 0;
+};
+/// "1920x1080". Throws UsageError, naming the option.
+Size parse_size(const std::string& option, const std::string& text);
+
+/// A decimal or a fraction such as 1/6. Throws UsageError, naming the option.
+double parse_number(const std::string& option, const std::string& text);
+/// Numbers between commas.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text);
+
+/// Writes `report` to stdout, and nothing else.
+void print_json(const nlohmann::ordered_json& report);
+
+/// A line on the real stderr for something the user should know, unless --quiet.
+void note(const std::string& text);
+
+/// A bar on a terminal, once the work has lasted two seconds.
+class Progress {
+public:
+    explicit Progress(std::string label, double total);
+    ~Progress();
+    void advance_to(double done);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    std::string label_;
+    double total_;
+    Clock::time_point start_ = Clock::now(), drawn_{};
+    bool visible_ = false;
+};
+
+/// Seconds that pieces of work took, added up.
+class Stopwatch {
+public:
+    template <class Work>
+    decltype(auto) time(double& seconds, Work work) {
+        struct Add {
+            double& seconds;
+            std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+            ~Add() { seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+        } add{seconds};
+        return work();
+    }
+};
+
+/// Routes what codecs print by themselves to nowhere, and keeps the real stderr for us.
+void silence_codecs();
+/// One line on the real stderr.
+void print_error(const std::string& what);
+
+}  // namespace bandlimit::app

@@ -1,0 +1,124 @@
+// Image files: whole or by blocks of rows, through OpenImageIO.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bandlimit/color/depth.h"
+#include "bandlimit/color/encoding.h"
+
+namespace bandlimit {
+
+/// What a file's codes mean, as a user may state it. `automatic`: 8- and 16-bit files are sRGB unless their metadata
+/// say linear; float files are linear. `data` is never decoded, and its alpha is a channel like the others.
+enum class Space { automatic, srgb, linear, data };
+Space parse_space(std::string_view name);
+std::string_view name_of(Space space);
+
+/// What a file says about itself. Sizes are those of the upright picture, after its orientation tag was applied.
+struct ImageInfo {
+    std::string format;                      ///< as OpenImageIO names it: "png", "openexr", ...
+    int width = 0, height = 0;
+    std::vector<std::string> channel_names;  ///< "R", "G", "B", "A", ...; EXR names are kept
+    Depth depth = Depth::u8;                 ///< what samples are read as: the stored depth, or the next that holds it
+    int alpha = -1;                          ///< channel that is coverage, or -1
+    bool associated = false;                 ///< colour is stored multiplied by alpha
+    Transfer transfer = Transfer::linear;    ///< what the metadata and the depth together say
+    std::string color_hint;                  ///< the file's own word: "sRGB", "linear", "gamma 2.2", "" if it has none
+    bool has_foreign_profile = false;        ///< an ICC profile that is not sRGB; its curve is treated as sRGB
+    int levels = 1, subimages = 1;
+    int orientation = 1;                     ///< Exif orientation that was applied
+
+    int channels() const { return static_cast<int>(channel_names.size()); }
+    /// The encoding to decode with when the user says `space`.
+    Encoding encoding(Space space) const;
+};
+
+/// An open image.
+///
+/// throws   std::runtime_error "PATH: what is wrong; what to do" from every function, for files that are missing, no
+///          images, truncated, or too large for this machine's memory
+class ImageReader {
+public:
+    explicit ImageReader(const std::string& path, int threads = 0);
+    ~ImageReader();
+    ImageReader(ImageReader&&) noexcept;
+    ImageReader& operator=(ImageReader&&) noexcept;
+
+    const ImageInfo& info() const;
+
+    /// Reads rows [y, y + view.height) into `view`, whose width, channels and depth are those of info().
+    ///
+    /// Rows in ascending order are read once and from top to bottom; going back costs a new start. Files that are
+    /// stored sideways or upside down are read whole at the first call.
+    void read_rows(int y, const AnyView& view);
+
+    /// All metadata, for a writer of the same picture to take over.
+    struct Metadata;
+    const Metadata& metadata() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// What a new file shall be.
+struct ImageTarget {
+    int width = 0, height = 0;
+    std::vector<std::string> channel_names;
+    Depth depth = Depth::u8;
+    int alpha = -1;
+    Transfer transfer = Transfer::srgb;                    ///< noted in the file where the format can
+    bool is_data = false;                                  ///< values are no colours: no colour space is noted
+    const ImageReader::Metadata* metadata = nullptr;       ///< taken over, with ICC profile, if not null
+};
+
+/// What a format, known by the extension of a path, can hold. Throws Error for an unknown extension, naming known ones.
+struct FormatAbilities {
+    std::string name;           ///< "png", "openexr", ...
+    std::vector<Depth> depths;  ///< best first
+    bool alpha = false;         ///< holds an alpha channel
+    bool associated = false;    ///< alpha is stored associated (EXR)
+    bool is_linear = false;     ///< holds linear light by convention (EXR, HDR, PFM)
+    int largest_channels = 4;
+};
+FormatAbilities abilities_of(const std::string& path);
+
+/// The depth of `wanted` or the nearest that the format holds.
+Depth nearest_depth(const FormatAbilities& format, Depth wanted);
+
+/// Writes a file beside `path` and renames it when all is well: the file appears whole or not at all.
+///
+/// A path that exists and is no regular file is refused, before its extension is looked at; directories are not created.
+/// throws   std::runtime_error as ImageReader
+class ImageWriter {
+public:
+    ImageWriter(const std::string& path, const ImageTarget& target, int threads = 0);
+    ~ImageWriter();  ///< removes what was written unless finish() was called
+    ImageWriter(ImageWriter&&) noexcept;
+    ImageWriter& operator=(ImageWriter&&) noexcept;
+
+    /// How colour and alpha must be stored in this file.
+    const Encoding& encoding() const;
+    /// Appends the rows of `view`, of the target's width, channels and depth.
+    void write_rows(const AnyConstView& view);
+    /// Closes, asks for errors that show only then (a full disk), and renames.
+    void finish();
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Checks early what ImageWriter would refuse: parent directory missing or not writable, no regular file there, ....
+void check_output_path(const std::string& path);
+
+/// Throws std::runtime_error with `what` if `bytes` exceed the memory that this machine has available.
+void require_memory(std::uint64_t bytes, const std::string& what);
+
+/// Removes the unfinished files of this process. Safe to call from a signal handler.
+void remove_unfinished_files() noexcept;
+
+}  // namespace bandlimit

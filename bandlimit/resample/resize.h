@@ -1,0 +1,97 @@
+// Resampling of whole images, from stored samples to stored samples.
+#pragma once
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bandlimit/color/encoding.h"
+#include "bandlimit/core/image.h"
+#include "bandlimit/core/parallel.h"
+#include "bandlimit/resample/bank.h"
+#include "bandlimit/resample/lines.h"
+
+namespace bandlimit {
+
+/// Picks a kernel per axis: lanczos3 where the image shrinks or keeps its size, mitchell where it grows.
+struct Auto {};
+
+/// What makes the weights.
+using Reconstruction = std::variant<Auto, Kernel, Taps>;
+
+/// The kernel that Auto means for this pair of axes.
+Kernel auto_kernel(const Axis& src, const Axis& dst);
+
+struct ResizeOptions {
+    Reconstruction reconstruction = Auto{};
+    Edge edge = Edge::renormalize;
+    /// Deringing, 0 to 1: how much of what overshoots the range of the nearest input samples (those within one pitch of
+    /// the coarser grid) is taken away. Not linear; 0 is off.
+    double antiring = 0;
+    /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Without an alpha channel no matter.
+    bool premultiply = true;
+};
+
+/// The axes of an image.
+struct Grid {
+    Axis x, y;
+};
+
+/// Source samples: rows [first_row, first_row + height) of the image, and what they mean.
+struct SourceRows {
+    AnyConstView samples;
+    int first_row = 0;
+    Encoding encoding;
+};
+
+/// Where output rows [first_row, first_row + height) go, and how they are stored.
+struct TargetRows {
+    AnyView samples;
+    int first_row = 0;
+    Encoding encoding;
+    /// If not empty: the opaque colour in linear light under the picture; alpha is dropped. [channels - 1]
+    std::vector<float> background;
+};
+
+/// A resampling ready to run on blocks of rows, so that neither image need be in memory.
+///
+/// Rows are decoded to linear float, filtered along both axes, and encoded, a few at a time, by contiguous runs of output
+/// rows per thread. Which axis is filtered first depends on the scale factors alone: parts of an image have the bits of
+/// the whole. Radial kernels filter both at once.
+///
+/// memory   per thread: the source rows that 16 output rows read, and 48 rows of floats
+/// error    as combine(), once per axis; u8 and u16 are the nearest codes of the float result
+class Resizer {
+public:
+    /// throws  Error as make_bank and Mapping, for antiring outside 0..1, and for channels < 1
+    Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options = {});
+    ~Resizer();
+    Resizer(Resizer&&) noexcept;
+    Resizer& operator=(Resizer&&) noexcept;
+
+    /// The names of the kernels used along x and y; "taps" for taps.
+    const std::string& kernel_x() const;
+    const std::string& kernel_y() const;
+
+    /// The stored source rows [begin, end) that output rows [first, last) are made of.
+    IndexRange rows_needed(int first, int last) const;
+
+    /// Computes the rows of `target` from those of `source`, which must hold rows_needed() of them.
+    ///
+    /// returns  whether a value that is not finite was stored as the code 0
+    /// throws   Error if sizes, channels or rows do not fit
+    bool run(const SourceRows& source, const TargetRows& target, Parallel parallel = {}) const;
+
+private:
+    struct Plan;
+    std::unique_ptr<const Plan> plan_;
+};
+
+/// Resamples linear light to width x height on the same interval: images share their corners.
+///
+/// shapes   src [w x h x c] with any strides; the result is laid out like `layout`
+/// example  resample(view, 64, 64, {.reconstruction = mitchell()})
+Image<float> resample(View<const float> src, int width, int height, const ResizeOptions& options = {},
+                      Parallel parallel = {}, Layout layout = Layout::planar);
+
+}  // namespace bandlimit
