@@ -199,7 +199,9 @@ void run(const Options& o) {
 
     ImageWriter writer(o.out, out.target, o.parallel.threads);
     StreamReport stream;
-    stream_resize(resizer, reader, in.encoding(o.space), writer, out.target, out.background, o.parallel, stream);
+    Encoding from = in.encoding(o.space), to = writer.encoding();
+    if (o.space == Space::data && !options.premultiply) from.alpha = to.alpha = -1;  // a channel like the others
+    stream_resize(resizer, reader, from, writer, to, out.target, out.background, o.parallel, stream);
     writer.finish();
     if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
     if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream));

@@ -70,8 +70,8 @@ int largest_band(const Resizer& resizer, int rows, int target_height) {
 
 }  // namespace
 
-void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& source_encoding, ImageWriter& writer,
-                   const ImageTarget& target, const std::vector<float>& background, Parallel parallel, StreamReport& report) {
+void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& from, ImageWriter& writer,
+                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel, StreamReport& report) {
     const ImageInfo& in = reader.info();
     const std::uint64_t source_row = row_bytes(in.width, in.channel_names.size(), in.depth);
     const std::uint64_t target_row = row_bytes(target.width, target.channel_names.size(), target.depth);
@@ -88,7 +88,7 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
         const AnyView out_rows = rows_of(view_of(out), 0, count);
         watch.time(report.read, [&] { band.hold(resizer.rows_needed(y, y + count)); });
         watch.time(report.filter, [&] {
-            if (resizer.run(band.rows(source_encoding), {out_rows, y, writer.encoding(), background}, parallel))
+            if (resizer.run(band.rows(from), {out_rows, y, to, background}, parallel))
                 report.lost_non_finite = true;
         });
         watch.time(report.write, [&] { writer.write_rows(as_const(out_rows)); });

@@ -1,11 +1,12 @@
-# What every target of the project shares, and how a component is made of rooms.
+# What every target of the project shares, and how rooms become components, tests, benchmarks, fuzzers and a package.
+# Every list of files is globbed with CONFIGURE_DEPENDS, so a new file needs no entry anywhere.
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
 
-# Warnings, sanitizers and floating point as we want them, for our own code only.
+# bandlimit_options(TARGET): warnings, sanitizers and floating point as we want them, for our own code only.
 function(bandlimit_options target)
     target_compile_options(${target} PRIVATE
         -Wall -Wextra -Wpedantic -Wconversion
@@ -15,12 +16,17 @@ function(bandlimit_options target)
         # The definition of every float filter is one rounding per tap: the compiler must fuse nothing by itself.
         -ffp-contract=off)
     if(BANDLIMIT_SANITIZE)
-        target_compile_options(${target} PUBLIC -fsanitize=${BANDLIMIT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-        target_link_options(${target} PUBLIC -fsanitize=${BANDLIMIT_SANITIZE})
+        set(sanitize -fsanitize=${BANDLIMIT_SANITIZE} -fno-sanitize-recover=all)
+        # Public: whoever links an instrumented library, a consumer of the package too, needs the same run-time.
+        target_compile_options(${target} PUBLIC ${sanitize} -fno-omit-frame-pointer
+            # GCC's documentation: with sanitizers this warning has false positives.
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+        target_link_options(${target} PUBLIC ${sanitize})
     endif()
 endfunction()
 
-# bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and benchmarks.
+# bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and
+# benchmarks, with its headers in the package. A room without files yet is an empty room.
 function(bandlimit_component name)
     cmake_parse_arguments(ARG "" "" "ROOMS" ${ARGN})
     set(target bandlimit_${name})
@@ -31,24 +37,182 @@ function(bandlimit_component name)
         file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*.cpp)
         list(FILTER sources EXCLUDE REGEX "_(test|bench)\\.cpp$")
         target_sources(${target} PRIVATE ${sources})
+        install(DIRECTORY ${PROJECT_SOURCE_DIR}/bandlimit/${room}
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit COMPONENT ${name}
+            FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
+        set_property(GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room} ${name})
     endforeach()
+    set_property(GLOBAL APPEND PROPERTY BANDLIMIT_ROOMS ${ARG_ROOMS})
     target_include_directories(${target} PUBLIC
         $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(${target} PUBLIC cxx_std_20)
     bandlimit_options(${target})
-    set_property(GLOBAL APPEND PROPERTY BANDLIMIT_COMPONENTS ${name})
-    set_property(GLOBAL APPEND PROPERTY BANDLIMIT_ROOMS ${ARG_ROOMS})
+    install(TARGETS ${target} EXPORT bandlimit_${name}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name})
+    install(EXPORT bandlimit_${name} FILE bandlimit_${name}.cmake NAMESPACE bandlimit::
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bandlimit COMPONENT ${name})
 endfunction()
 
-# The tests of a room, from its *_test.cpp files; one program each, so that rooms build and run side by side.
-function(bandlimit_room_tests room)
-    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*_test.cpp)
+# The program: the file `bandlimit` at the root of the build directory.
+function(bandlimit_program)
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*.cpp)
+    list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
     if(NOT sources)
         return()
     endif()
-    set(target test_${room})
-    add_executable(${target} ${sources})
-    target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest_main)
-    bandlimit_options(${target})
-    gtest_discover_tests(${target} TEST_PREFIX "${room}: " DISCOVERY_TIMEOUT 60)
+    find_package(CLI11 REQUIRED)
+    add_executable(bandlimit ${sources})
+    target_link_libraries(bandlimit PRIVATE
+        bandlimit::core bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+    target_compile_definitions(bandlimit PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
+    bandlimit_options(bandlimit)
+    install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endfunction()
+
+# bandlimit_test_program(NAME PREFIX source...): one GoogleTest program; its tests are called "PREFIX: Suite.Name".
+function(bandlimit_test_program name prefix)
+    add_executable(test_${name} ${ARGN})
+    set_target_properties(test_${name} PROPERTIES
+        OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+    target_link_libraries(test_${name} PRIVATE rapidcheck rapidcheck_gtest GTest::gtest_main)
+    bandlimit_options(test_${name})
+    gtest_discover_tests(test_${name} TEST_PREFIX "${prefix}: " DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()
+
+# The tests of each room, from its *_test.cpp files: one program a room, so that rooms build and run side by side.
+function(bandlimit_room_tests)
+    get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
+    foreach(room IN LISTS rooms)
+        file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*_test.cpp)
+        if(sources)
+            get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
+            bandlimit_test_program(${room} ${room} ${sources})
+            target_link_libraries(test_${room} PRIVATE bandlimit::${component})
+        endif()
+    endforeach()
+endfunction()
+
+# The tests of the program, one test program per apps/*_test.cpp. Each gets the path of the program under test
+# (BANDLIMIT_PROGRAM) and of the files that ship with the project (BANDLIMIT_EXAMPLES).
+function(bandlimit_app_tests)
+    if(NOT TARGET bandlimit)
+        return()
+    endif()
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*_test.cpp)
+    foreach(source IN LISTS sources)
+        cmake_path(GET source STEM name)
+        bandlimit_test_program(app_${name} apps ${source})
+        target_link_libraries(test_app_${name} PRIVATE bandlimit::core bandlimit::io nlohmann_json::nlohmann_json)
+        target_compile_definitions(test_app_${name} PRIVATE
+            BANDLIMIT_PROGRAM="$<TARGET_FILE:bandlimit>" BANDLIMIT_EXAMPLES="${PROJECT_SOURCE_DIR}/examples")
+        add_dependencies(test_app_${name} bandlimit)
+    endforeach()
+endfunction()
+
+# "consumer: core alone" installs core, and only core, and builds and runs a small project against it.
+function(bandlimit_consumer_tests)
+    set(cases "core alone|core")
+    if(BANDLIMIT_IO)
+        list(APPEND cases "core and io|core,io")
+    endif()
+    foreach(case IN LISTS cases)
+        string(REGEX MATCH "(.*)\\|(.*)" _ ${case})
+        add_test(NAME "consumer: ${CMAKE_MATCH_1}" COMMAND ${CMAKE_COMMAND}
+            -D BUILD=${PROJECT_BINARY_DIR} -D COMPONENTS=${CMAKE_MATCH_2} -D COMPILER=${CMAKE_CXX_COMPILER}
+            -P ${PROJECT_SOURCE_DIR}/cmake/consumer/check.cmake)
+    endforeach()
+endfunction()
+
+# The target headers: each header in a translation unit of its own, with what its component gives to a consumer.
+function(bandlimit_header_checks)
+    add_custom_target(headers)
+    get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
+    if(TARGET bandlimit)
+        list(APPEND rooms apps)
+    endif()
+    foreach(room IN LISTS rooms)
+        if(room STREQUAL "apps")
+            set(folder apps)
+            set(libraries bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+        else()
+            set(folder bandlimit/${room})
+            get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
+            set(libraries bandlimit::${component})
+        endif()
+        file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.h)
+        set(units)
+        foreach(header IN LISTS headers)
+            set(unit ${PROJECT_BINARY_DIR}/headers/${header}.cpp)
+            file(CONFIGURE OUTPUT ${unit} CONTENT "#include \"${header}\"\n")
+            list(APPEND units ${unit})
+        endforeach()
+        if(units)
+            add_library(headers_${room} OBJECT EXCLUDE_FROM_ALL ${units})
+            target_link_libraries(headers_${room} PRIVATE ${libraries})
+            target_include_directories(headers_${room} PRIVATE ${PROJECT_SOURCE_DIR})
+            bandlimit_options(headers_${room})
+            target_compile_options(headers_${room} PRIVATE -O0 -g0)
+            add_dependencies(headers headers_${room})
+        endif()
+    endforeach()
+endfunction()
+
+# The benchmarks of each room, from its *_bench.cpp files. As a test each runs for a moment, to show that it does.
+function(bandlimit_benchmarks)
+    get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
+    foreach(room IN LISTS rooms)
+        file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*_bench.cpp)
+        if(sources)
+            get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
+            add_executable(bench_${room} ${sources})
+            set_target_properties(bench_${room} PROPERTIES
+                OUTPUT_NAME ${room} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench)
+            target_link_libraries(bench_${room} PRIVATE bandlimit::${component} benchmark::benchmark_main)
+            bandlimit_options(bench_${room})
+            add_test(NAME "bench: ${room}" COMMAND bench_${room} --benchmark_min_time=0.001)
+        endif()
+    endforeach()
+endfunction()
+
+# The fuzzers, one per fuzz/*.cpp; what made one fail is kept in fuzz/corpus/NAME. As a test each replays its corpus
+# and goes on from there for ten seconds, from the same seed every time.
+function(bandlimit_fuzzers)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")
+    endif()
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*.cpp)
+    foreach(source IN LISTS sources)
+        cmake_path(GET source STEM name)
+        add_executable(fuzz_${name} ${source})
+        set_target_properties(fuzz_${name} PROPERTIES
+            OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
+        target_link_libraries(fuzz_${name} PRIVATE bandlimit::core $<TARGET_NAME_IF_EXISTS:bandlimit::io>)
+        bandlimit_options(fuzz_${name})
+        target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+        # What the fuzzer finds goes to the first folder; the project's own corpus is only read.
+        set(found ${PROJECT_BINARY_DIR}/fuzz/found/${name})
+        file(MAKE_DIRECTORY ${found})
+        set(corpus ${PROJECT_SOURCE_DIR}/fuzz/corpus/${name})
+        if(NOT EXISTS ${corpus})
+            set(corpus)
+        endif()
+        add_test(NAME "fuzz: ${name}" WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz
+            COMMAND fuzz_${name} -seed=1 -max_total_time=10 -timeout=10 -verbosity=0 ${found} ${corpus})
+    endforeach()
+endfunction()
+
+# What find_package(bandlimit) reads.
+function(bandlimit_package)
+    include(CMakePackageConfigHelpers)
+    set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/bandlimit)
+    configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/bandlimitConfig.cmake.in bandlimitConfig.cmake
+        INSTALL_DESTINATION ${folder} NO_SET_AND_CHECK_MACRO)
+    write_basic_package_version_file(bandlimitConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+    install(FILES ${PROJECT_BINARY_DIR}/bandlimitConfig.cmake ${PROJECT_BINARY_DIR}/bandlimitConfigVersion.cmake
+        DESTINATION ${folder} COMPONENT core)
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)
+    if(BANDLIMIT_IO)
+        install(FILES ${PROJECT_SOURCE_DIR}/cmake/bandlimitOpenImageIO.cmake DESTINATION ${folder} COMPONENT io)
+    endif()
 endfunction()

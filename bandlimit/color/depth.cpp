@@ -1,8 +1,6 @@
 #include "bandlimit/color/depth.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "bandlimit/core/error.h"
 
@@ -11,10 +9,6 @@ namespace {
 
 constexpr std::array depths{Depth::u8, Depth::u16, Depth::f16, Depth::f32};
 constexpr std::array<std::string_view, depths.size()> names{"u8", "u16", "f16", "f32"};
-
-int code_of(double value, int largest) {
-    return std::isfinite(value) ? static_cast<int>(std::clamp(value, 0.0, 1.0) * largest + 0.5) : 0;
-}
 
 }  // namespace
 
@@ -54,8 +48,5 @@ AnyConstView as_const(const AnyView& view) {
 }
 
 Depth depth_of(const AnyConstView& view) { return depths[view.index()]; }
-
-std::uint8_t to_u8(double value) { return static_cast<std::uint8_t>(code_of(value, 255)); }
-std::uint16_t to_u16(double value) { return static_cast<std::uint16_t>(code_of(value, 65535)); }
 
 }  // namespace bandlimit

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -44,7 +45,15 @@ inline float from_code(std::uint8_t code) { return static_cast<float>(code) / 25
 inline float from_code(std::uint16_t code) { return static_cast<float>(code) / 65535.0f; }
 
 /// Value to code: clamped to [0, 1] and rounded to nearest. What is not finite becomes 0.
-std::uint8_t to_u8(double value);
-std::uint16_t to_u16(double value);
+///
+/// The product is exact in double for every float, so the rounding is that of the exact value. Written without branches,
+/// for loops over rows.
+template <class Code>
+Code to_code(double value) {
+    constexpr double largest = std::numeric_limits<Code>::max(), infinity = std::numeric_limits<double>::infinity();
+    const double positive = value > 0 && value < infinity ? value : 0;
+    const double clamped = positive < 1 ? positive : 1;
+    return static_cast<Code>(static_cast<int>(clamped * largest + 0.5));
+}
 
 }  // namespace bandlimit

@@ -99,8 +99,8 @@ struct SrgbLoader<T> {
     float operator()(T v) const { return table[v]; }
 };
 
-void store_linear(std::uint8_t& to, float v) { to = to_u8(static_cast<double>(v)); }
-void store_linear(std::uint16_t& to, float v) { to = to_u16(static_cast<double>(v)); }
+void store_linear(std::uint8_t& to, float v) { to = to_code<std::uint8_t>(static_cast<double>(v)); }
+void store_linear(std::uint16_t& to, float v) { to = to_code<std::uint16_t>(static_cast<double>(v)); }
 void store_linear(Half& to, float v) { to = to_half(v); }
 void store_linear(float& to, float v) { to = v; }
 
@@ -123,34 +123,47 @@ void check_row(std::size_t samples, int width, int channels, const char* functio
              " channels are needed");
 }
 
+/// Calls visit(stored sample, working sample) along row `y` of `image`: for the channels that `chosen` admits, or in one
+/// go over everything where all are admitted and the samples lie side by side.
+template <class T, class Working, class Chosen, class Visit>
+void for_each_sample(View<T> image, int y, Working* row, Chosen chosen, Visit visit) {
+    const std::ptrdiff_t width = image.width, channels = image.channels;
+    bool all = image.dc == 1 && image.dx == channels;
+    for (int c = 0; c < image.channels; ++c) all = all && chosen(c);
+    if (all) {
+        T* const stored = &image(0, y);
+        for (std::ptrdiff_t i = 0; i < width * channels; ++i) visit(stored[i], row[i]);
+        return;
+    }
+    for (int c = 0; c < image.channels; ++c) {
+        if (!chosen(c)) continue;
+        T* const stored = &image(0, y, c);
+        for (std::ptrdiff_t x = 0; x < width; ++x) visit(stored[x * image.dx], row[x * channels + c]);
+    }
+}
+
+/// Which channels are stored as they are, and which through the transfer function.
+struct LinearChannels {
+    const Encoding& stored;
+    bool operator()(int c) const { return stored.transfer == Transfer::linear || c == stored.alpha; }
+};
+struct CurvedChannels {
+    const Encoding& stored;
+    bool operator()(int c) const { return !LinearChannels{stored}(c); }
+};
+
 template <class T>
 void decode_typed(View<const T> image, int y, const Encoding& stored, std::span<float> row) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    for (int c = 0; c < image.channels; ++c) {
-        const T* from = &image(0, y, c);
-        float* to = row.data() + c;
-        const auto read = [&](auto load) {
-            for (std::size_t x = 0; x < static_cast<std::size_t>(image.width); ++x)
-                to[x * channels] = load(from[static_cast<std::ptrdiff_t>(x) * image.dx]);
-        };
-        if (c == stored.alpha || stored.transfer == Transfer::linear) read([](T v) { return load_linear(v); });
-        else read(SrgbLoader<T>{});
-    }
+    for_each_sample(image, y, row.data(), LinearChannels{stored}, [](T v, float& to) { to = load_linear(v); });
+    if (stored.transfer == Transfer::linear) return;
+    for_each_sample(image, y, row.data(), CurvedChannels{stored}, [load = SrgbLoader<T>{}](T v, float& to) { to = load(v); });
 }
 
 template <class T>
 void encode_typed(std::span<const float> row, View<T> image, int y, const Encoding& stored) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    for (int c = 0; c < image.channels; ++c) {
-        const float* from = row.data() + c;
-        T* to = &image(0, y, c);
-        const auto write = [&](auto store) {
-            for (std::size_t x = 0; x < static_cast<std::size_t>(image.width); ++x)
-                store(to[static_cast<std::ptrdiff_t>(x) * image.dx], from[x * channels]);
-        };
-        if (c == stored.alpha || stored.transfer == Transfer::linear) write([](T& t, float v) { store_linear(t, v); });
-        else write(SrgbStorer<T>{});
-    }
+    for_each_sample(image, y, row.data(), LinearChannels{stored}, [](T& to, float v) { store_linear(to, v); });
+    if (stored.transfer == Transfer::linear) return;
+    for_each_sample(image, y, row.data(), CurvedChannels{stored}, [store = SrgbStorer<T>{}](T& to, float v) { store(to, v); });
 }
 
 /// Calls change(colour sample, alpha) for every colour sample of an interleaved row.

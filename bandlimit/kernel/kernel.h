@@ -35,8 +35,8 @@ Kernel tent();     ///< radius 1: linear interpolation
 Kernel quadratic_bspline();        ///< radius 3/2, smooth, approximating
 Kernel quadratic_interpolating();  ///< radius 3/2, Dodgson 1997, "Quadratic interpolation for image resampling", r = 1
 
-/// radius 2: the family of Mitchell & Netravali 1988, eq. 8. (1, 0) B-spline, (0, 1/2) Catmull-Rom, (1/3, 1/3)
-/// Mitchell.
+/// radius 2: the family of Mitchell & Netravali 1988, eq. 8. (1, 0) is the B-spline, (0, 1/2)
+/// Catmull-Rom, (1/3, 1/3) Mitchell.
 Kernel cubic(double b, double c);
 Kernel bspline();
 Kernel catmull_rom();
@@ -50,9 +50,8 @@ Kernel blackman_harris_window();            ///< radius 1.65: the 4-term window,
 Kernel kaiser(double radius, double beta);  ///< sinc(x) I0(beta sqrt(1 - (x/radius)^2)) / I0(beta)
 
 Kernel jinc_lanczos(int lobes);  ///< radial: jinc(r) jinc(r z1/zN), radius the N-th zero zN of jinc; continuous
-Kernel jinc_lanczos_unscaled(
-    int lobes);                    ///< radial: pi jinc(r) jinc(r / N), radius N; jumps there (-1.2 % of the peak for 2)
-Kernel radial_lanczos(int lobes);  ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
+Kernel jinc_lanczos_unscaled(int lobes);  ///< radial: pi jinc(r) jinc(r / N), radius N, where it jumps
+Kernel radial_lanczos(int lobes);         ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
 
 /// The kernel that `name` describes: a name of kernel_list(), with parameters after colons ("cubic:0.3:0.35"), or an
 /// alias ("bilinear").

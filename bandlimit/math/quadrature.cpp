@@ -35,18 +35,33 @@ Rule legendre_rule() {
     return rule;
 }
 
-}  // namespace
-
-double integrate(const std::function<double(double)>& f, double a, double b, int panels) {
-    if (panels < 1) fail("integrate: panels = ", panels, "; pass 1 or more");
+/// Visits the points of all panels with their weights.
+template <class Visit>
+void for_each_point(const char* function, double a, double b, int panels, Visit visit) {
+    if (panels < 1) fail(function, ": panels = ", panels, "; pass 1 or more");
     static const Rule rule = legendre_rule();
     const double half = (b - a) / panels / 2;
-    double sum = 0;
     for (int p = 0; p < panels; ++p) {
         const double middle = a + (2 * p + 1) * half;
-        for (std::size_t i = 0; i < points; ++i) sum += rule.weight[i] * f(middle + half * rule.node[i]);
+        for (std::size_t i = 0; i < points; ++i) visit(middle + half * rule.node[i], half * rule.weight[i]);
     }
-    return sum * half;
+}
+
+}  // namespace
+
+Quadrature quadrature(double a, double b, int panels) {
+    Quadrature result;
+    for_each_point("quadrature", a, b, panels, [&](double x, double weight) {
+        result.at.push_back(x);
+        result.weights.push_back(weight);
+    });
+    return result;
+}
+
+double integrate(const std::function<double(double)>& f, double a, double b, int panels) {
+    double sum = 0;
+    for_each_point("integrate", a, b, panels, [&](double x, double weight) { sum += weight * f(x); });
+    return sum;
 }
 
 }  // namespace bandlimit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "bandlimit/core/error.h"
@@ -38,36 +39,52 @@ bool has_contiguous_lanes(const View<T>& v) {
 
 constexpr int tile_lanes = 32;  // two vectors of 512 bits; 4096 of them are 512 KiB
 
-/// Lanes [begin, end) of an image at every x, side by side: the transposition that lets a horizontal filter run the
-/// vertical loop.
+/// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where channels
+/// are interleaved and the run starts a pixel, else single samples.
+template <class T, class Copy>
+void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
+    for (int k = 0; k < count;) {
+        const int y = static_cast<int>((lane + k) / v.channels), c = static_cast<int>((lane + k) % v.channels);
+        const int run = v.dc == 1 && c == 0 && k + v.channels <= count ? v.channels : 1;
+        T* const first = &v(0, y, c);
+        switch (run) {  // a constant length turns each copy into one or two moves
+            case 2: copy(first, k, std::integral_constant<int, 2>()); break;
+            case 3: copy(first, k, std::integral_constant<int, 3>()); break;
+            case 4: copy(first, k, std::integral_constant<int, 4>()); break;
+            default: copy(first, k, run);
+        }
+        k += run;
+    }
+}
+
+/// Some lanes of an image at every x, side by side: the transposition that lets a horizontal filter run the vertical loop.
 class Tile {
 public:
-    Tile(int width, int lanes)
-        : lanes_(static_cast<std::size_t>(lanes)), samples_(static_cast<std::size_t>(width) * lanes_) {}
-    float* at(int x) { return samples_.data() + static_cast<std::size_t>(x) * lanes_; }
+    explicit Tile(int lanes) : lanes_(lanes) {}
+    /// `scratch` keeps its memory from call to call.
+    void resize(int width, std::vector<float>& scratch) {
+        const std::size_t needed = static_cast<std::size_t>(width) * static_cast<std::size_t>(lanes_);
+        if (scratch.size() < needed) scratch.resize(needed);
+        samples_ = scratch.data();
+    }
+    float* at(int x) const { return samples_ + x * lanes_; }
 
-    void load(View<const float> v, std::ptrdiff_t lane, int count) {
-        for_each_lane(lane, count, v.channels, [&](int y, int c, int k) {
-            const float* from = &v(0, y, c);
-            for (int x = 0; x < v.width; ++x) at(x)[k] = from[x * v.dx];
+    void load(View<const float> v, std::ptrdiff_t lane, int count) const {
+        for_each_run(v, lane, count, [&](const float* from, int k, auto run) {
+            float* to = samples_ + k;
+            for (int x = 0; x < v.width; ++x, from += v.dx, to += lanes_) std::copy_n(from, int{run}, to);
         });
     }
-    void store(View<float> v, std::ptrdiff_t lane, int count) {
-        for_each_lane(lane, count, v.channels, [&](int y, int c, int k) {
-            float* to = &v(0, y, c);
-            for (int x = 0; x < v.width; ++x) to[x * v.dx] = at(x)[k];
+    void store(View<float> v, std::ptrdiff_t lane, int count) const {
+        for_each_run(v, lane, count, [&](float* to, int k, auto run) {
+            const float* from = samples_ + k;
+            for (int x = 0; x < v.width; ++x, to += v.dx, from += lanes_) std::copy_n(from, int{run}, to);
         });
     }
 
 private:
-    template <class Visit>
-    static void for_each_lane(std::ptrdiff_t lane, int count, int channels, Visit visit) {
-        for (int k = 0; k < count; ++k)
-            visit(static_cast<int>((lane + k) / channels), static_cast<int>((lane + k) % channels), k);
-    }
-
-    std::size_t lanes_;
-    std::vector<float> samples_;
+    std::ptrdiff_t lanes_;
+    float* samples_ = nullptr;
 };
 
 /// Runs lanes [begin, end) through the bank, by way of tiles where a view is not contiguous.
@@ -76,7 +93,10 @@ void apply_lanes(const Bank& bank, IndexRange read, View<const float> src, View<
     const bool direct_src = has_contiguous_lanes(src), direct_dst = has_contiguous_lanes(dst);
     const int step = direct_src && direct_dst ? std::numeric_limits<int>::max() : tile_lanes;
     const int lanes = static_cast<int>(std::min<std::ptrdiff_t>(step, end - begin));
-    Tile in(direct_src ? 0 : src.width, lanes), out(direct_dst ? 0 : dst.width, lanes);
+    thread_local std::vector<float> in_scratch, out_scratch;  // 32 lanes of a row each: not worth new pages per call
+    Tile in(tile_lanes), out(tile_lanes);
+    if (!direct_src) in.resize(src.width, in_scratch);
+    if (!direct_dst) out.resize(dst.width, out_scratch);
     std::vector<float*> to(static_cast<std::size_t>(dst.width));
     for (std::ptrdiff_t lane = begin; lane < end; lane += lanes) {
         const int count = static_cast<int>(std::min<std::ptrdiff_t>(lanes, end - lane));

@@ -1,0 +1,332 @@
+#include "bandlimit/analysis/shift.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "bandlimit/analysis/finite.h"
+#include "bandlimit/analysis/taper.h"
+#include "bandlimit/core/error.h"
+#include "bandlimit/core/image.h"
+#include "bandlimit/math/fft.h"
+#include "bandlimit/resample/apply.h"
+
+namespace bandlimit {
+namespace {
+
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+constexpr int largest_window = 1024;
+constexpr int smallest_axis = 4;
+constexpr double fit_band = 0.25;    // cycles per sample: below most of what down- and upsampling alias or cut
+constexpr double flat = 1e-3;        // share of gradient energy under which a direction holds no structure
+constexpr double oblique = 0.02;     // sine of the angle to an axis from which stripes are not along it
+constexpr double coherent = 0.3;     // agreement of phases below which images are unrelated
+
+struct Vec {
+    double x = 0, y = 0;
+};
+
+// ---- Images ----------------------------------------------------------------------------------------------------------
+
+Image<float> mean_of_channels(View<const float> v) {
+    Image<float> mean(v.width, v.height);
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) {
+            double total = 0;
+            for (int c = 0; c < v.channels; ++c) total += double(finite_or_zero(v(x, y, c)));
+            mean.view()(x, y) = static_cast<float>(total / v.channels);
+        }
+    return mean;
+}
+
+/// Scales to a mean of 0 and a largest value of 1, so that no scale of the input is special. False for a constant.
+bool standardize(View<float> v) {
+    double total = 0, most = 0;
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) total += double(v(x, y));
+    const double mean = total / (double(v.width) * v.height);
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) most = std::max(most, std::abs(double(v(x, y)) - mean));
+    if (!(most > 1e-6 * std::abs(mean))) return false;
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) v(x, y) = static_cast<float>((double(v(x, y)) - mean) / most);
+    return true;
+}
+
+Image<float> run(const Bank& bank, View<const float> v, Parallel parallel) {
+    Image<float> out(bank.output_count(), v.height);
+    apply(bank, v, out.view(), parallel);
+    return out;
+}
+
+Image<float> run(const Bank& along_x, const Bank& along_y, View<const float> v, Parallel parallel) {
+    const Image<float> rows = run(along_x, v, parallel);
+    Image<float> out(rows.width(), along_y.output_count());
+    apply(along_y, transposed(rows.view()), transposed(out.view()), parallel);
+    return out;
+}
+
+/// The mean of every column: an image of one row.
+Image<float> column_means(View<const float> v, Parallel parallel) {
+    const Taps mean{0, std::vector<double>(static_cast<std::size_t>(v.height), 1.0 / v.height), v.height};
+    Image<float> out(v.width, 1);
+    apply(make_bank(mean, v.height, Edge::clamp), transposed(v), transposed(out.view()), parallel);
+    return out;
+}
+
+/// The largest size up to n whose only prime factors are 2, 3 and 5, for which the FFT is fast.
+int fast_size(int n) {
+    const auto is_fast = [](int m) {
+        for (const int p : {2, 3, 5})
+            while (m % p == 0) m /= p;
+        return m == 1;
+    };
+    while (n > 1 && !is_fast(n)) --n;
+    return std::max(n, 1);
+}
+
+// ---- Spectra ---------------------------------------------------------------------------------------------------------
+
+ComplexGrid tapered_spectrum(View<const float> v) {
+    const std::vector<double> wx = hann(v.width), wy = hann(v.height);
+    ComplexGrid grid(v.width, v.height);
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x)
+            grid.at(x, y) = wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)] * double(v(x, y));
+    fft(grid);
+    return grid;
+}
+
+/// Calls visit(f, A, B) for the frequencies within the band that is fitted.
+template <class Visit>
+void for_band(const ComplexGrid& a, const ComplexGrid& b, Visit visit) {
+    for (int y = 0; y < a.height; ++y) {
+        const double fy = bin_frequency(y, a.height);
+        if (std::abs(fy) > fit_band) continue;
+        for (int x = 0; x < a.width; ++x) {
+            const double fx = bin_frequency(x, a.width);
+            if (std::abs(fx) <= fit_band) visit(Vec{fx, fy}, a.at(x, y), b.at(x, y));
+        }
+    }
+}
+
+/// The shift of b against a to the nearest sample: the peak of the phase correlation, weighted to low frequencies.
+Vec coarse_shift(const ComplexGrid& a, const ComplexGrid& b) {
+    ComplexGrid cross(a.width, a.height);
+    double strongest = 0;
+    for (std::size_t i = 0; i < cross.values.size(); ++i) {
+        cross.values[i] = b.values[i] * std::conj(a.values[i]);
+        strongest = std::max(strongest, std::abs(cross.values[i]));
+    }
+    const double noise = 1e-6 * strongest;
+    for (int y = 0; y < cross.height; ++y)
+        for (int x = 0; x < cross.width; ++x) {
+            const double fx = bin_frequency(x, cross.width) / fit_band, fy = bin_frequency(y, cross.height) / fit_band;
+            Complex& c = cross.at(x, y);
+            c *= std::exp(-2 * (fx * fx + fy * fy)) / (std::abs(c) + noise);
+        }
+    inverse_fft(cross);
+    const auto peak = std::max_element(cross.values.begin(), cross.values.end(),
+                                       [](const Complex& p, const Complex& q) { return p.real() < q.real(); });
+    const int at = static_cast<int>(peak - cross.values.begin());
+    return {bin_frequency(at % cross.width, cross.width) * cross.width,
+            bin_frequency(at / cross.width, cross.height) * cross.height};
+}
+
+/// The shift d that explains the phases -2 pi f.d of B conj(A) best: least squares, weighted by cross-power.
+Vec fit_plane(const ComplexGrid& a, const ComplexGrid& b) {
+    double xx = 0, xy = 0, yy = 0, px = 0, py = 0;
+    for_band(a, b, [&](Vec f, Complex fa, Complex fb) {
+        const Complex c = fb * std::conj(fa);
+        const double weight = std::abs(c), phase = -std::arg(c) / (2 * pi);
+        xx += weight * f.x * f.x, xy += weight * f.x * f.y, yy += weight * f.y * f.y;
+        px += weight * f.x * phase, py += weight * f.y * phase;
+    });
+    if (a.width == 1) return {0, yy > 0 ? py / yy : 0};
+    if (a.height == 1) return {xx > 0 ? px / xx : 0, 0};
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 0)) return {};
+    return {(px * yy - py * xy) / determinant, (py * xx - px * xy) / determinant};
+}
+
+// ---- Alignment -------------------------------------------------------------------------------------------------------
+
+/// Where two images show the same, and those parts of them.
+struct Aligned {
+    Image<float> a, b;
+    Vec shift;
+};
+
+/// The cells [begin, begin + size) of a and those `shift` further in b overlap, for the largest fast size.
+Axis overlap(int count, double shift) {
+    const int moved = static_cast<int>(std::lround(shift));
+    const int size = fast_size(std::max(1, count - std::abs(moved)));
+    const int begin = std::max(0, -moved) + (count - std::abs(moved) - size) / 2;
+    return {size, double(begin), double(begin + size)};
+}
+
+/// Samples of v on an axis that lies `shift` further along; sharp up to the band that is fitted.
+Bank shifted_bank(int count, const Axis& axis, double shift) {
+    return make_bank(kaiser(8, 8), Axis{count, 0, double(count)}, Axis{axis.count, axis.begin + shift, axis.end + shift},
+                     Edge::reflect);
+}
+
+/// Shifts b back by ever better estimates, until the phases of what is left are flat.
+Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
+    const auto crop = [](View<const float> v, const Axis& x, const Axis& y) {
+        return cropped(v, static_cast<int>(x.begin), static_cast<int>(y.begin), x.count, y.count);
+    };
+    Axis x = overlap(a.width, 0), y = overlap(a.height, 0);
+    Vec shift = coarse_shift(tapered_spectrum(crop(a, x, y)), tapered_spectrum(crop(b, x, y)));
+    x = overlap(a.width, shift.x), y = overlap(a.height, shift.y);
+    const ComplexGrid spectrum_a = tapered_spectrum(crop(a, x, y));
+    const double limit_x = std::abs(shift.x) + 2, limit_y = std::abs(shift.y) + 2;  // beyond it the crop is another
+    for (int step = 0; step < 8; ++step) {
+        const Image<float> back =
+            run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel);
+        const Vec update = fit_plane(spectrum_a, tapered_spectrum(back.view()));
+        shift.x = std::clamp(shift.x + update.x, -limit_x, limit_x);
+        shift.y = std::clamp(shift.y + update.y, -limit_y, limit_y);
+        if (std::abs(update.x) < 1e-4 && std::abs(update.y) < 1e-4) break;
+    }
+    const Axis none_x{a.width, 0, double(a.width)};
+    return {run(shifted_bank(a.width, x, 0), shifted_bank(a.height, y, 0), a, parallel),
+            run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel), shift};
+}
+
+// ---- What the images allow to say ------------------------------------------------------------------------------------
+
+struct Gradient {
+    Image<float> x, y;
+};
+
+/// Derivatives of a Gaussian of 1.5 samples: the same in all directions, and nothing left beyond the fitted band.
+Gradient gradient(View<const float> v, Parallel parallel) {
+    constexpr int radius = 6;
+    Taps smooth{-radius, {}, 1}, slope{-radius, {}, 1};
+    for (int i = -radius; i <= radius; ++i) {
+        smooth.weights.push_back(std::exp(-i * i / (2 * 1.5 * 1.5)));
+        slope.weights.push_back(i * smooth.weights.back());
+    }
+    const auto bank = [](const Taps& taps, int count) { return make_bank(taps, count, Edge::reflect); };
+    return {run(bank(slope, v.width), bank(smooth, v.height), v, parallel),
+            run(bank(smooth, v.width), bank(slope, v.height), v, parallel)};
+}
+
+/// Mean products of gradient components, the structure tensor, scaled to a trace of 1.
+struct Tensor {
+    double xx = 0, xy = 0, yy = 0;
+};
+
+Tensor tensor_of(const Gradient& g) {
+    Tensor t;
+    const View<const float> gx = g.x.view(), gy = g.y.view();
+    for (int y = 0; y < gx.height; ++y)
+        for (int x = 0; x < gx.width; ++x) {
+            const double dx = double(gx(x, y)), dy = double(gy(x, y));
+            t.xx += dx * dx, t.xy += dx * dy, t.yy += dy * dy;
+        }
+    const double trace = t.xx + t.yy;
+    if (trace > 0) t.xx /= trace, t.xy /= trace, t.yy /= trace;
+    return t;
+}
+
+/// The directions along which an image varies most and least, and the share of the gradient's energy along the latter.
+struct Directions {
+    Vec most{1, 0}, least{0, 1};
+    double least_share = 0;
+};
+
+Directions directions_of(const Tensor& t) {
+    const double mean = (t.xx + t.yy) / 2, spread = std::hypot((t.xx - t.yy) / 2, t.xy);
+    const double angle = std::atan2(2 * t.xy, t.xx - t.yy) / 2;
+    const Vec most{std::cos(angle), std::sin(angle)};
+    return {most, {-most.y, most.x}, std::max(0.0, mean - spread)};
+}
+
+Image<float> along(const Gradient& g, Vec direction) {
+    Image<float> out(g.x.width(), g.x.height());
+    for (int y = 0; y < out.height(); ++y)
+        for (int x = 0; x < out.width(); ++x)
+            out.view()(x, y) = static_cast<float>(direction.x * double(g.x.view()(x, y)) +
+                                                  direction.y * double(g.y.view()(x, y)));
+    return out;
+}
+
+/// Whether the derivatives of two aligned images along a direction come from one scene: their phases agree.
+bool agree(const Gradient& a, const Gradient& b, Vec direction) {
+    const ComplexGrid fa = tapered_spectrum(along(a, direction).view());
+    const ComplexGrid fb = tapered_spectrum(along(b, direction).view());
+    double real = 0, power = 0, squares = 0;
+    for_band(fa, fb, [&](Vec, Complex p, Complex q) {
+        const Complex c = q * std::conj(p);
+        real += c.real(), power += std::abs(c), squares += std::norm(c);
+    });
+    if (!(power > 0)) return false;
+    // Half of the frequencies mirror the other half, and the taper couples 1.5 neighbours per axis.
+    const double coupling = (fa.width > 1 ? 1.5 : 1) * (fa.height > 1 ? 1.5 : 1);
+    const double independent = std::max(1.0, power * power / squares / 2 / coupling);
+    const double deviation = 1 / std::sqrt(2 * independent);  // of the mean cosine of random phases
+    return real / power >= std::clamp(5 * deviation, coherent, 0.9);
+}
+
+Shift solve(View<const float> a, View<const float> b, Parallel parallel);
+
+/// The shift along x of images whose rows are all alike, or too few to tell.
+Shift solve_along_x(View<const float> a, View<const float> b, Parallel parallel) {
+    const Image<float> row_a = column_means(a, parallel), row_b = column_means(b, parallel);
+    return {solve(row_a.view(), row_b.view(), parallel).x, {}};
+}
+
+/// The same for images that vary along one direction only.
+Shift solve_along(Vec direction, View<const float> a, View<const float> b, Parallel parallel) {
+    if (a.width == 1 || a.height == 1) return {};
+    if (std::abs(direction.y) < oblique) return solve_along_x(a, b, parallel);
+    if (std::abs(direction.x) < oblique)
+        return {{}, solve_along_x(transposed(a), transposed(b), parallel).x};
+    return {};
+}
+
+Shift solve(View<const float> a, View<const float> b, Parallel parallel) {
+    const Tensor ta = tensor_of(gradient(a, parallel)), tb = tensor_of(gradient(b, parallel));
+    const Directions both = directions_of({ta.xx + tb.xx, ta.xy + tb.xy, ta.yy + tb.yy});
+    const bool is_line = a.width == 1 || a.height == 1;
+    if (!is_line && both.least_share < flat) return solve_along(both.most, a, b, parallel);
+
+    const Aligned aligned = align(a, b, parallel);
+    const Gradient ga = gradient(aligned.a.view(), parallel), gb = gradient(aligned.b.view(), parallel);
+    if (!agree(ga, gb, both.most)) return {};
+    if (!is_line && !agree(ga, gb, both.least)) return solve_along(both.most, a, b, parallel);
+    Shift shift;
+    if (a.width > 1) shift.x = aligned.shift.x;
+    if (a.height > 1) shift.y = aligned.shift.y;
+    return shift;
+}
+
+}  // namespace
+
+ShiftWindow shift_window(int width, int height) {
+    const int w = std::min(width, largest_window), h = std::min(height, largest_window);
+    return {(width - w) / 2, (height - h) / 2, w, h};
+}
+
+Shift estimate_shift(View<const float> a, View<const float> b, Parallel parallel) {
+    if (!same_shape(a, b) || a.width < 1 || a.height < 1 || a.channels < 1)
+        fail("estimate_shift: images of ", a.width, " x ", a.height, " x ", a.channels, " and ", b.width, " x ", b.height,
+             " x ", b.channels, "; pass images of one shape, with samples");
+    const ShiftWindow w = shift_window(a.width, a.height);
+    Image<float> window_a = mean_of_channels(cropped(a, w.x, w.y, w.width, w.height));
+    Image<float> window_b = mean_of_channels(cropped(b, w.x, w.y, w.width, w.height));
+    if (!standardize(window_a.view()) || !standardize(window_b.view())) return {};
+    const View<const float> va = std::as_const(window_a).view(), vb = std::as_const(window_b).view();
+    if (w.width < smallest_axis && w.height < smallest_axis) return {};
+    if (w.height < smallest_axis) return solve_along_x(va, vb, parallel);
+    if (w.width < smallest_axis) return {{}, solve_along_x(transposed(va), transposed(vb), parallel).x};
+    return solve(va, vb, parallel);
+}
+
+}  // namespace bandlimit
