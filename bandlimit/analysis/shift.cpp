@@ -193,7 +193,6 @@ Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
         shift.y = std::clamp(shift.y + update.y, -limit_y, limit_y);
         if (std::abs(update.x) < 1e-4 && std::abs(update.y) < 1e-4) break;
     }
-    const Axis none_x{a.width, 0, double(a.width)};
     return {run(shifted_bank(a.width, x, 0), shifted_bank(a.height, y, 0), a, parallel),
             run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel), shift};
 }

@@ -174,7 +174,16 @@ void with_alpha(std::span<float> row, std::size_t channels, std::size_t alpha, C
             if (c != alpha) row[pixel + c] = change(row[pixel + c], row[pixel + alpha]);
 }
 
+// Zero alpha takes the colour away, even one that is not finite.
+float multiplied(float colour, float alpha) { return alpha == 0 ? 0 : colour * alpha; }
 float divided(float colour, float alpha) { return alpha > 0 ? colour / alpha : 0; }
+
+/// Writes a row whose alpha is as it is to be stored; returns whether a value that is not finite became a code.
+template <class T>
+bool encode_and_check(std::span<const float> row, View<T> image, int y, const Encoding& stored) {
+    encode_typed(row, image, y, stored);
+    return std::is_integral_v<T> && !std::all_of(row.begin(), row.end(), [](float v) { return std::isfinite(v); });
+}
 
 }  // namespace
 
@@ -185,7 +194,7 @@ void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool p
             decode_typed(view, y, stored, row);
             if (stored.alpha >= 0 && premultiplied && !stored.associated)
                 with_alpha(row, static_cast<std::size_t>(view.channels), static_cast<std::size_t>(stored.alpha),
-                           [](float colour, float alpha) { return alpha == 0 ? 0 : colour * alpha; });
+                           multiplied);
         },
         image);
 }
@@ -194,18 +203,11 @@ bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& i
     return std::visit(
         [&](auto view) {
             check_row(row.size(), view.width, view.channels, "encode_row");
-            if (stored.alpha >= 0 && premultiplied != stored.associated) {
-                std::vector<float> changed(row.begin(), row.end());
-                with_alpha(
-                    changed, static_cast<std::size_t>(view.channels), static_cast<std::size_t>(stored.alpha),
-                    [&](float colour, float alpha) { return premultiplied ? divided(colour, alpha) : colour * alpha; });
-                encode_typed(changed, view, y, stored);
-            } else {
-                encode_typed(row, view, y, stored);
-            }
-            using Sample = std::remove_pointer_t<decltype(view.data)>;
-            return std::is_integral_v<Sample> &&
-                   !std::all_of(row.begin(), row.end(), [](float v) { return std::isfinite(v); });
+            if (stored.alpha < 0 || premultiplied == stored.associated) return encode_and_check(row, view, y, stored);
+            std::vector<float> changed(row.begin(), row.end());
+            with_alpha(changed, static_cast<std::size_t>(view.channels), static_cast<std::size_t>(stored.alpha),
+                       premultiplied ? divided : multiplied);
+            return encode_and_check<std::remove_pointer_t<decltype(view.data)>>(changed, view, y, stored);
         },
         image);
 }
@@ -217,7 +219,7 @@ void composite_row(std::span<const float> row, bool premultiplied, int channels,
         const float* pixel = row.data() + x * from;
         for (std::size_t c = 0; c < to; ++c) {
             const float colour = pixel[c < a ? c : c + 1];
-            out[x * to + c] = (premultiplied ? colour : colour * pixel[a]) + (1 - pixel[a]) * background[c];
+            out[x * to + c] = (premultiplied ? colour : multiplied(colour, pixel[a])) + (1 - pixel[a]) * background[c];
         }
     }
 }

@@ -22,8 +22,10 @@ struct Encoding {
 /// cost     a table look-up per sample of u8 and u16
 void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied, std::span<float> row);
 
-/// Writes `row`, which decode_row with the same `premultiplied` could have read, to row `y` of `image`.
+/// Writes `row` to row `y` of `image`.
 ///
+/// `premultiplied` tells what the row holds, not what was asked of decode_row: a source that is stored associated gives
+/// premultiplied rows in either case.
 /// Integers are clamped and rounded to the nearest code of the exact transfer function; what is not finite becomes 0.
 /// Where colour is divided by alpha, zero alpha gives zero colour.
 /// shapes   row [width * channels]

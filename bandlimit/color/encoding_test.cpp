@@ -60,11 +60,11 @@ std::vector<Code> all_codes() {
 }
 
 template <class Code>
-class Integers : public testing::Test {};
+class IntegerRows : public testing::Test {};
 using Codes = testing::Types<std::uint8_t, std::uint16_t>;
-TYPED_TEST_SUITE(Integers, Codes);
+TYPED_TEST_SUITE(IntegerRows, Codes);
 
-TYPED_TEST(Integers, EveryCodeDecodesToTheNearestFloatAndSurvives) {
+TYPED_TEST(IntegerRows, EveryCodeDecodesToTheNearestFloatAndSurvives) {
     const auto codes = all_codes<TypeParam>();
     const int largest = std::numeric_limits<TypeParam>::max();
     for (const Transfer transfer : {Transfer::linear, Transfer::srgb}) {
@@ -82,7 +82,7 @@ TYPED_TEST(Integers, EveryCodeDecodesToTheNearestFloatAndSurvives) {
     }
 }
 
-TYPED_TEST(Integers, SrgbCodesAreThoseOfTheExactFunctionAtEveryThreshold) {
+TYPED_TEST(IntegerRows, SrgbCodesAreThoseOfTheExactFunctionAtEveryThreshold) {
     const int largest = std::numeric_limits<TypeParam>::max();
     Row row;
     std::vector<int> expected;
@@ -100,7 +100,7 @@ TYPED_TEST(Integers, SrgbCodesAreThoseOfTheExactFunctionAtEveryThreshold) {
         ASSERT_EQ(result.image.view()(static_cast<int>(i), 0), expected[i]) << row[i];
 }
 
-TYPED_TEST(Integers, WhatIsOutsideIsClampedAndWhatIsNotFiniteBecomesZero) {
+TYPED_TEST(IntegerRows, WhatIsOutsideIsClampedAndWhatIsNotFiniteBecomesZero) {
     const auto largest = std::numeric_limits<TypeParam>::max();
     for (const Transfer transfer : {Transfer::linear, Transfer::srgb}) {
         const Row inside{-1e30f, -1e-30f, -0.0f, 1.0f, 1.5f, 1e30f, std::numeric_limits<float>::denorm_min()};

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bandlimit/color/depth.h"
@@ -14,12 +15,13 @@ namespace bandlimit {
 /// What a file's codes mean, as a user may state it. `automatic`: 8- and 16-bit files are sRGB unless their metadata
 /// say linear; float files are linear. `data` is never decoded, and its alpha is a channel like the others.
 enum class Space { automatic, srgb, linear, data };
+/// "auto", "srgb", "linear" or "data". Throws Error, listing them, for any other name.
 Space parse_space(std::string_view name);
 std::string_view name_of(Space space);
 
 /// What a file says about itself. Sizes are those of the upright picture, after its orientation tag was applied.
 struct ImageInfo {
-    std::string format;                      ///< as OpenImageIO names it: "png", "openexr", ...
+    std::string format;                      ///< as OpenImageIO names it: "png", "openexr", "pnm" (PFM too), ...
     int width = 0, height = 0;
     std::vector<std::string> channel_names;  ///< "R", "G", "B", "A", ...; EXR names are kept
     Depth depth = Depth::u8;                 ///< what samples are read as: the stored depth, or the next that holds it
@@ -32,14 +34,22 @@ struct ImageInfo {
     int orientation = 1;                     ///< Exif orientation that was applied
 
     int channels() const { return static_cast<int>(channel_names.size()); }
-    /// The encoding to decode with when the user says `space`.
+    /// The encoding to decode with when the user says `space`; for `data`, no channel is alpha.
     Encoding encoding(Space space) const;
 };
 
-/// An open image.
+/// An open image. What kind of file it is, its first bytes say, whatever it is called.
 ///
+/// range    PNG, JPEG, TIFF, EXR, HDR, PNM and PFM, WebP, BMP, TGA: the first picture, at its largest size. An EXR data
+///          window is taken for the image. Palettes and 1 bit become u8; 32-bit integers, doubles and EXR channels of
+///          mixed types become f32. The alpha of WebP comes multiplied from OpenImageIO and is divided again, to within
+///          half a code of the product.
+/// cost     no more than the rows asked for and one row of tiles, strips or compressed blocks, except for files that
+///          are stored sideways, upside down, interlaced or progressively, and for WebP and PNM
+/// threads  how many may decode: 0 all cores, 1 the caller's alone. The setting belongs to the process: OpenImageIO
+///          keeps one pool
 /// throws   std::runtime_error "PATH: what is wrong; what to do" from every function, for files that are missing, no
-///          images, truncated, or too large for this machine's memory
+///          images, truncated, or too large for this machine's memory; Error for rows or views that do not fit
 class ImageReader {
 public:
     explicit ImageReader(const std::string& path, int threads = 0);
@@ -82,7 +92,10 @@ struct FormatAbilities {
     bool alpha = false;         ///< holds an alpha channel
     bool associated = false;    ///< alpha is stored associated (EXR)
     bool is_linear = false;     ///< holds linear light by convention (EXR, HDR, PFM)
+    bool notes_space = false;   ///< can say whether its codes are sRGB or linear (PNG)
+    std::vector<int> channels;    ///< the numbers it holds: 4 are RGBA, 2 grey and alpha; empty = any, each its own
     int largest_channels = 4;
+    int largest_side = 0;         ///< pixels; 0 = no limit of its own
 };
 FormatAbilities abilities_of(const std::string& path);
 

@@ -1,6 +1,8 @@
 #include "bandlimit/kernel/kernel.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -14,10 +16,8 @@ constexpr double window_radius = 1.65;
 
 /// Shortest text that reads back as the same parameter in a kernel's name.
 std::string number(double x) {
-    std::ostringstream text;
-    text.precision(12);
-    text << x;
-    return text.str();
+    std::array<char, 32> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
 }
 
 std::vector<double> integers_below(double radius) {
@@ -127,7 +127,7 @@ Kernel blackman_harris() {
 Kernel blackman_harris_window() {
     // Harris 1978, "On the use of windows for harmonic analysis", table 1: minimum 4-term window, -92 dB.
     const auto value = [](double x) {
-        const double t = x / window_radius;
+        const double t = std::abs(x) / window_radius;
         const auto cosine = [t](int n) { return sin_pi(n * t + 0.5); };
         return inside(x, window_radius) * (0.35875 + 0.48829 * cosine(1) + 0.14128 * cosine(2) + 0.01168 * cosine(3));
     };
@@ -154,7 +154,10 @@ Kernel jinc_lanczos(int lobes) {
 
 Kernel jinc_lanczos_unscaled(int lobes) {
     check_lobes("jinc-unscaled", lobes);
-    const auto value = [lobes](double r) { return inside(r, lobes) * std::numbers::pi * jinc(r) * jinc(r / lobes); };
+    // 0 at the jump itself, as published: samples do lie there.
+    const auto value = [lobes](double r) {
+        return std::abs(r) < lobes ? std::numbers::pi * jinc(r) * jinc(r / lobes) : 0;
+    };
     return {"jinc" + std::to_string(lobes) + "-unscaled", double(lobes), value, Kernel::Form::radial,
             integers_below(lobes)};
 }

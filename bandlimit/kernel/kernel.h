@@ -23,7 +23,7 @@ struct Kernel {
 
     std::string name;                     ///< as parse_kernel() reads it
     double radius = 0;                    ///< exact: value is 0 beyond
-    std::function<double(double)> value;  ///< any finite argument; at a jump the mean of both sides, or as published
+    std::function<double(double)> value;  ///< any finite argument; at a jump the mean of both sides if not said otherwise, or as published
     Form form = Form::separable;
     std::vector<double> knots;  ///< where in (0, radius) value or a derivative of it jumps; for quadrature
 };
@@ -50,7 +50,7 @@ Kernel blackman_harris_window();            ///< radius 1.65: the 4-term window,
 Kernel kaiser(double radius, double beta);  ///< sinc(x) I0(beta sqrt(1 - (x/radius)^2)) / I0(beta)
 
 Kernel jinc_lanczos(int lobes);  ///< radial: jinc(r) jinc(r z1/zN), radius the N-th zero zN of jinc; continuous
-Kernel jinc_lanczos_unscaled(int lobes);  ///< radial: pi jinc(r) jinc(r / N), radius N, where it jumps
+Kernel jinc_lanczos_unscaled(int lobes);  ///< radial: pi jinc(r) jinc(r / N) for r < N; jumps to 0 at its radius N
 Kernel radial_lanczos(int lobes);         ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
 
 /// The kernel that `name` describes: a name of kernel_list(), with parameters after colons ("cubic:0.3:0.35"), or an

@@ -10,8 +10,8 @@ struct Quadrature {
     std::vector<double> at, weights;
 };
 
-/// Gauss-Legendre quadrature on [a, b] with 16 points on each of `panels` equal parts, in ascending order of parts: what
-/// integrate() uses, for those who integrate many functions over one interval. Throws Error if panels < 1.
+/// Gauss-Legendre quadrature on [a, b] with 16 points on each of `panels` equal parts, in ascending order of parts:
+/// what integrate() uses, for those who integrate many functions over one interval. Throws Error if panels < 1.
 Quadrature quadrature(double a, double b, int panels = 1);
 
 /// The integral of f over [a, b] by Gauss-Legendre quadrature with 16 points on each of `panels` equal parts.

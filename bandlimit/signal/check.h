@@ -13,8 +13,8 @@ inline void check_option(const char* function, const char* option, double value,
     if (!(value >= low && value <= high)) fail(function, ": ", option, " = ", value, "; pass ", help);
 }
 
-constexpr double largest_position = 1e9;   ///< pixels; keeps phases within some 1e-6 of a period
-constexpr double smallest_length = 1e-2;   ///< pixels; below it a pixel would hold too many periods to add up
+constexpr double largest_position = 1e9;  ///< pixels; keeps phases within some 1e-6 of a period
+constexpr double smallest_length = 1e-2;  ///< pixels; below it a pixel would hold too many periods to add up
 
 inline void check_position(const char* function, const char* option, double value) {
     check_option(function, option, value, -largest_position, largest_position, "a number of at most 1e9");

@@ -59,7 +59,8 @@ Extent extent_along(const Cell& cell, const Direction& direction) {
 }
 
 int panels_for(double periods) {
-    if (!(periods < 1e6)) fail("signal: ", periods, " periods under one sample; stay nearer to the frame of the signal");
+    if (!(periods < 1e6))
+        fail("signal: ", periods, " periods under one sample; stay nearer to the frame of the signal");
     return 1 + static_cast<int>(periods);
 }
 

@@ -45,7 +45,8 @@ int keep_band(ComplexGrid& spectrum, double cutoff) {
 Field make_field(int width, int height, const BandLimitedNoiseOptions& options) {
     const int factor = Field::sampling_factor(options.cutoff);
     if (std::max(width, height) > (1 << 30) / factor)
-        fail("band_limited_noise: size ", width, " x ", height, "; pass at most ", (1 << 30) / factor, " pixels a side");
+        fail("band_limited_noise: size ", width, " x ", height, "; pass at most ", (1 << 30) / factor,
+             " pixels a side");
     Field field{factor, ComplexGrid(width * factor, height * factor)};
     Random random(options.seed);
     for (std::complex<double>& value : field.samples.values) value = random.uniform(-1, 1);

@@ -13,7 +13,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int rows_per_task = 8;
-constexpr std::ptrdiff_t block_samples = 1 << 24;  // of the fine image held at a time: 64 MB
+constexpr int smallest_block = 8;  // rows made at a time, each from `samples` fine rows and the kernel's margin ...
+constexpr int block_samples = 1 << 24;  // ... or more, while the fine image has no more samples than this: 64 MB
 
 /// Sets each pixel to at(column, row).
 template <class At>
@@ -44,7 +45,8 @@ Quadrature kernel_nodes(const Kernel& kernel, double cycles_per_pitch) {
     double sum = 0;
     for (std::size_t i = 1; i < ends.size(); ++i) {
         // Twice the panels that the wave alone needs, since the kernel bends too.
-        const Quadrature part = quadrature(ends[i - 1], ends[i], panels_for(2 * cycles_per_pitch * (ends[i] - ends[i - 1])));
+        const Quadrature part =
+            quadrature(ends[i - 1], ends[i], panels_for(2 * cycles_per_pitch * (ends[i] - ends[i - 1])));
         for (std::size_t k = 0; k < part.at.size(); ++k) {
             all.at.push_back(part.at[k]);
             all.weights.push_back(part.weights[k] * kernel.value(part.at[k]));
@@ -66,7 +68,8 @@ std::vector<Complex> filtered(const Wave& wave, const Kernel& kernel, const Axis
         for (std::ptrdiff_t i = begin; i < end; ++i) {
             Complex sum = 0;
             for (std::size_t k = 0; k < nodes.at.size(); ++k)
-                sum += nodes.weights[k] * wave.value(axis.position(static_cast<double>(i)) + axis.pitch() * nodes.at[k]);
+                sum +=
+                    nodes.weights[k] * wave.value(axis.position(static_cast<double>(i)) + axis.pitch() * nodes.at[k]);
             result[static_cast<std::size_t>(i)] = sum;
         }
     });
@@ -97,8 +100,8 @@ void draw_exact(const Signal& signal, const Kernel& kernel, const Grid& grid, Vi
 Axis fine_axis(const Axis& axis, const Kernel& kernel, int samples) {
     const int margin = static_cast<int>(std::ceil(kernel.radius));
     if (axis.count > (1 << 30) / samples - 2 * margin)
-        fail("render: ", axis.count, " pixels with ", samples, " samples each; at most ", (1 << 30) / samples - 2 * margin,
-             " pixels can be supersampled so");
+        fail("render: ", axis.count, " pixels with ", samples, " samples each; at most ",
+             (1 << 30) / samples - 2 * margin, " pixels can be supersampled so");
     Axis fine = axis.cells(-margin, axis.count + margin);
     fine.count *= samples;
     return fine;
@@ -111,8 +114,7 @@ void draw_supersampled(const Signal& signal, const Sampling& sampling, const Gri
     const Grid fine{fine_axis(grid.x, sampling.kernel, sampling.samples),
                     fine_axis(grid.y, sampling.kernel, sampling.samples)};
     const Resizer resizer(fine, grid, 1, {.reconstruction = sampling.kernel, .edge = Edge::clamp});
-    const std::ptrdiff_t fine_rows = std::max<std::ptrdiff_t>(1, block_samples / fine.x.count);
-    const int block = static_cast<int>(std::clamp<std::ptrdiff_t>(fine_rows / sampling.samples, 8, image.height));
+    const int block = std::max(smallest_block, static_cast<int>(block_samples / fine.x.count / sampling.samples));
     for (int first = 0; first < image.height; first += block) {
         const int last = std::min(first + block, image.height);
         const IndexRange needed = resizer.rows_needed(first, last);
@@ -153,8 +155,6 @@ Image<float> render(const Signal& signal, int width, int height, const Sampling&
     return image;
 }
 
-std::string exact_signals() {
-    return "zoneplate, chirp, edge, stripes, checker, box, disc, ramp, impulse, line";
-}
+std::string exact_signals() { return "zoneplate, chirp, edge, stripes, checker, box, disc, ramp, impulse, line"; }
 
 }  // namespace bandlimit

@@ -38,13 +38,17 @@ struct Sampling {
 ///
 /// shapes   image [grid.x.count x grid.y.count x 1]
 /// units    grid in the pixels of the signal; {width, 0, width} is the image, {width / 2, 0, width} its half size
-/// error    point and exact: the float nearest to the value to within about 1e-12. supersampled with box: the jumps of a
-///          signal cost up to 1 / samples of a pixel; with smooth kernels what lies above samples - 1/2 cycles per pixel
-///          aliases. Same bits for any number of threads, and for a part of the image (Axis::cells) on whole pixels
-/// cost     point: one value per pixel. exact: one mean per pixel, or, for products, one 1D integral per row and column.
+/// error    point and exact: the float nearest to the value to within about 1e-12. supersampled with box: the jumps of
+/// a
+///          signal cost up to 1 / samples of a pixel; with smooth kernels what lies above samples - 1/2 cycles per
+///          pixel aliases. Same bits for any number of threads, and for a part of the image (Axis::cells) on whole
+///          pixels
+/// cost     point: one value per pixel. exact: one mean per pixel, or, for products, one 1D integral per row and
+/// column.
 ///          supersampled: samples^2 values per pixel, one pass of Resizer, and about 64 MB
 /// throws   Error if shapes disagree, the signal has no exact form for this kernel, or `samples` is out of range
-void render(const Signal& signal, const Grid& grid, const Sampling& sampling, View<float> image, Parallel parallel = {});
+void render(const Signal& signal, const Grid& grid, const Sampling& sampling, View<float> image,
+            Parallel parallel = {});
 
 /// The image [0, width] x [0, height] of `signal`.
 ///

@@ -145,8 +145,7 @@ Signal ramp(const Frame& frame, const RampOptions& options) {
     const auto mean = [=](const Cell& cell) {
         const auto [low, high] = extent_along(cell, direction);
         // Where it is one straight piece, the mean of a ramp is its value in the middle.
-        if (high <= begin || low >= end || (low >= begin && high <= end))
-            return along((low + high) / 2);
+        if (high <= begin || low >= end || (low >= begin && high <= end)) return along((low + high) / 2);
         return mean_along(cell, direction, along, {begin, end});
     };
     return {"ramp", value, mean, {}};

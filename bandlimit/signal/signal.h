@@ -35,7 +35,8 @@ struct Cell {
 /// An oscillation along one coordinate.
 struct Wave {
     std::function<std::complex<double>(double)> value;
-    std::function<double(double)> frequency;  ///< >= 0, at least the local one; over an interval largest at an end of it
+    std::function<double(double)>
+        frequency;  ///< >= 0, at least the local one; over an interval largest at an end of it
 };
 
 /// offset + Re(x(X) * y(Y)): seen through a separable kernel it stays a product of two functions of one coordinate.
@@ -46,10 +47,10 @@ struct WaveProduct {
 
 /// A continuous signal. Draw it with render.h.
 struct Signal {
-    std::string name;                              ///< one word: "zoneplate"
-    std::function<double(double, double)> value;   ///< at a point (x, y); safe to call from several threads
-    std::function<double(const Cell&)> mean;       ///< exact mean over a cell; empty where no closed form is known
-    std::optional<WaveProduct> product;            ///< the same function, for signals of this form
+    std::string name;                             ///< one word: "zoneplate"
+    std::function<double(double, double)> value;  ///< at a point (x, y); safe to call from several threads
+    std::function<double(const Cell&)> mean;      ///< exact mean over a cell; empty where no closed form is known
+    std::optional<WaveProduct> product;           ///< the same function, for signals of this form
 };
 
 /// `signal` with 0 and 1 mapped to `low` and `high`, all else in proportion.
@@ -64,20 +65,20 @@ Signal constant(double value);
 /// Along each axis it is max_frequency at most wherever |x|, |y| <= radius. The default radius reaches the midpoint of
 /// the farther border; with 0.5 no pixel of the frame then holds more than the pixel grid can carry.
 struct ZonePlateOptions {
-    double max_frequency = 0.5;    ///< > 0
+    double max_frequency = 0.5;  ///< > 0
     double phase = 0;
-    std::optional<Point> center;   ///< default: the middle of the frame
-    std::optional<double> radius;  ///< > 0; default: half the longer side
+    std::optional<Point> center = {};   ///< default: the middle of the frame
+    std::optional<double> radius = {};  ///< > 0; default: half the longer side
 };
 Signal zone_plate(const Frame& frame, const ZonePlateOptions& options = {});
 
 /// Spokes around a centre: at radius r their frequency is spokes / (2 pi r). 1/2 outside the radius.
 struct SiemensStarOptions {
-    int spokes = 72;               ///< >= 1 bright ones
-    double phase = 0;              ///< turns the star by this share of the angle between two spokes
-    bool hard = true;              ///< 0 or 1; else a sinusoid around the centre
-    std::optional<Point> center;   ///< default: the middle of the frame
-    std::optional<double> radius;  ///< > 0; default: half the shorter side
+    int spokes = 72;                    ///< >= 1 bright ones
+    double phase = 0;                   ///< turns the star by this share of the angle between two spokes
+    bool hard = true;                   ///< 0 or 1; else a sinusoid around the centre
+    std::optional<Point> center = {};   ///< default: the middle of the frame
+    std::optional<double> radius = {};  ///< > 0; default: half the shorter side
 };
 Signal siemens_star(const Frame& frame, const SiemensStarOptions& options = {});
 
@@ -87,7 +88,7 @@ struct ChirpOptions {
     double from = 0.01, to = 0.5;  ///< frequencies >= 0 where the frame begins and ends; both > 0 if exponential
     bool exponential = false;
     double angle = 0;
-    double phase = 0;              ///< where the frame begins
+    double phase = 0;  ///< where the frame begins
 };
 Signal chirp(const Frame& frame, const ChirpOptions& options = {});
 
@@ -100,7 +101,7 @@ Signal step_edge(const Frame& frame, const StepEdgeOptions& options = {});
 
 /// Bright stripes from the origin on: 1 where t / period + phase, without its whole part, is below duty.
 struct StripesOptions {
-    double period = 8;      ///< >= 0.01
+    double period = 8;  ///< >= 0.01
     double angle = 0;
     double phase = 0;
     double duty = 0.5;      ///< 0 to 1: the bright share of a period
@@ -116,27 +117,29 @@ Signal checkerboard(const CheckerboardOptions& options = {});
 
 /// 1 inside a cell, 0 outside.
 struct RectangleOptions {
-    std::optional<Cell> cell;  ///< default: the middle half of the frame each way
+    std::optional<Cell> cell = {};  ///< default: the middle half of the frame each way
 };
 Signal rectangle(const Frame& frame, const RectangleOptions& options = {});
 
 /// 1 inside a circle, 0 outside.
 struct DiscOptions {
-    std::optional<Point> center;   ///< default: the middle of the frame
-    std::optional<double> radius;  ///< > 0; default: a quarter of the shorter side
+    std::optional<Point> center = {};   ///< default: the middle of the frame
+    std::optional<double> radius = {};  ///< > 0; default: a quarter of the shorter side
 };
 Signal disc(const Frame& frame, const DiscOptions& options = {});
 
 /// From 0 to 1 along a straight line, and constant beyond.
 struct RampOptions {
     double angle = 0;
-    std::optional<double> length;  ///< > 0, centred in the frame; default: from the first of its corners to the last
+    std::optional<double> length =
+        {};  ///< > 0, centred in the frame; default: from the first of its corners to the last
 };
 Signal ramp(const Frame& frame, const RampOptions& options = {});
 
 /// 1 on a unit square, the cell of a pixel; 0 elsewhere. Its integral is 1 at any position.
 struct ImpulseOptions {
-    std::optional<Point> corner;  ///< the square's least x and y; default: those of the pixel at width / 2, height / 2
+    std::optional<Point> corner =
+        {};  ///< the square's least x and y; default: those of the pixel at width / 2, height / 2
 };
 Signal impulse(const Frame& frame, const ImpulseOptions& options = {});
 
@@ -159,7 +162,8 @@ Signal white_noise(const WhiteNoiseOptions& options = {});
 /// noise behind a brick wall that is round in two dimensions.
 ///
 /// error    exact to double precision at the centres of pixels; elsewhere within 1e-6 of the RMS, by interpolation
-/// cost     16 bytes and one Fourier transform per pixel, four times that for each doubling of the cut-off from 0.25 on;
+/// cost     16 bytes and one Fourier transform per pixel, four times that for each doubling of the cut-off from 0.25
+/// on;
 ///          a value away from the centres takes some microseconds
 /// throws   Error also if no frequency of the frame but 0 lies within the cut-off
 struct BandLimitedNoiseOptions {

@@ -27,10 +27,10 @@ std::complex<double> mean_of(const Wave& wave, double a, double b) {
 }
 
 /// A signal of the form of `product`: its mean over a cell is made of the means of the two waves.
-Signal product_signal(const std::string& name, std::function<double(double, double)> value, const WaveProduct& product) {
+Signal product_signal(const std::string& name, std::function<double(double, double)> value,
+                      const WaveProduct& product) {
     const auto mean = [product](const Cell& cell) {
-        return product.offset +
-               (mean_of(product.x, cell.x0, cell.x1) * mean_of(product.y, cell.y0, cell.y1)).real();
+        return product.offset + (mean_of(product.x, cell.x0, cell.x1) * mean_of(product.y, cell.y0, cell.y1)).real();
     };
     return {name, std::move(value), mean, product};
 }
@@ -48,7 +48,9 @@ struct Sweep {
 
 private:
     /// Beyond some place the frequency stays: an exponential chirp soon leaves what numbers can hold.
-    double inside(double t) const { return exponential ? std::clamp(t, 0.0, length) : std::clamp(t, -length, 2 * length); }
+    double inside(double t) const {
+        return exponential ? std::clamp(t, 0.0, length) : std::clamp(t, -length, 2 * length);
+    }
     double periods_inside(double t) const {
         if (!exponential) return (from + (to - from) * t / length / 2) * t;
         const double growth = std::log(to / from);
@@ -66,8 +68,8 @@ Signal sinusoid(const Direction& direction, double frequency, double phase) {
         return 0.5 + 0.5 * sin_pi(2 * (direction.along(x, y) * frequency + phase));
     };
     // sin(a) is the real part of exp(i (a - pi/2)).
-    return product_signal("stripes", value, {0.5, wave(direction.x * frequency, phase - 0.25, 0.5),
-                                             wave(direction.y * frequency, 0, 1)});
+    return product_signal("stripes", value,
+                          {0.5, wave(direction.x * frequency, phase - 0.25, 0.5), wave(direction.y * frequency, 0, 1)});
 }
 
 /// A wave along x or y alone.

@@ -1,0 +1,56 @@
+#include "apps/pictures.h"
+
+#include "bandlimit/core/parallel.h"
+
+namespace bandlimit::app {
+namespace {
+
+std::vector<std::string> names_of(int channels) {
+    switch (channels) {
+        case 1: return {"Y"};
+        case 2: return {"Y", "A"};
+        case 3: return {"R", "G", "B"};
+        default: return {"R", "G", "B", "A"};
+    }
+}
+
+/// Row y of any view, channels interleaved.
+void gather(View<const float> from, int y, std::vector<float>& row) {
+    row.clear();
+    for (int x = 0; x < from.width; ++x)
+        for (int c = 0; c < from.channels; ++c) row.push_back(from(x, y, c));
+}
+
+}  // namespace
+
+void write_picture(const std::string& path, View<const float> linear, Depth depth) {
+    const bool is_linear = abilities_of(path).is_linear || !is_integer(depth);
+    const int alpha = linear.channels == 2 || linear.channels == 4 ? linear.channels - 1 : -1;
+    const ImageTarget target{linear.width, linear.height, names_of(linear.channels), depth, alpha,
+                             is_linear ? Transfer::linear : Transfer::srgb, false, nullptr};
+    ImageWriter writer(path, target);
+    AnyImage stored = make_image(depth, linear.width, 1, linear.channels);
+    std::vector<float> row;
+    for (int y = 0; y < linear.height; ++y) {
+        gather(linear, y, row);
+        encode_row(row, false, view_of(stored), 0, writer.encoding());
+        writer.write_rows(as_const(view_of(stored)));
+    }
+    writer.finish();
+}
+
+Image<float> read_picture(const std::string& path, Space space, Parallel parallel) {
+    ImageReader reader(path, parallel.threads);
+    const ImageInfo& info = reader.info();
+    const Encoding encoding = info.encoding(space);
+    Image<float> image(info.width, info.height, info.channels(), Layout::interleaved);
+    AnyImage stored = make_image(info.depth, info.width, 1, info.channels());
+    const auto row_length = static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.channels());
+    for (int y = 0; y < info.height; ++y) {
+        reader.read_rows(y, view_of(stored));
+        decode_row(as_const(view_of(stored)), 0, encoding, false, {&image.view()(0, y), row_length});
+    }
+    return image;
+}
+
+}  // namespace bandlimit::app

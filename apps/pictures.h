@@ -1,0 +1,17 @@
+// Pictures in memory to and from files.
+#pragma once
+#include <string>
+
+#include "bandlimit/color/depth.h"
+#include "bandlimit/core/image.h"
+#include "bandlimit/io/image_file.h"
+
+namespace bandlimit::app {
+
+/// Writes linear light to a file of the given depth, encoded as the format and depth ask; 1, 3 or 4 channels.
+void write_picture(const std::string& path, View<const float> linear, Depth depth = Depth::u8);
+
+/// Reads a whole file as linear light, alpha not multiplied.
+Image<float> read_picture(const std::string& path, Space space = Space::automatic, Parallel parallel = {});
+
+}  // namespace bandlimit::app

@@ -1,0 +1,53 @@
+// The parts of the tour. Each adds sections to the page and writes its pictures beside it.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/page.h"
+#include "apps/plot.h"
+#include "bandlimit/core/image.h"
+#include "bandlimit/core/parallel.h"
+
+namespace bandlimit::app {
+
+struct Tour {
+    std::filesystem::path directory;
+    Parallel parallel;
+    Page page;
+
+    std::string path(const std::string& file) const { return (directory / file).string(); }
+    /// Draws panels side by side into `file` and returns its name.
+    std::string plot(const std::string& file, const std::vector<Panel>& panels, int width, int height) const {
+        draw(panels, path(file), width, height);
+        return file;
+    }
+};
+
+void tour_lanczos(Tour& tour);    ///< Lanczos in two dimensions
+void tour_grids(Tour& tour);      ///< down- and upsampling, and where the samples lie
+void tour_splines(Tour& tour);    ///< linear, quadratic and cubic interpolation
+void tour_images(Tour& tour);     ///< zone plate, star, photograph
+
+/// The photographs that the program carries: the bytes of a PNG file each.
+struct EmbeddedFile {
+    const char* name;
+    const unsigned char* bytes;
+    std::size_t size;
+};
+std::vector<EmbeddedFile> embedded_photographs();
+
+/// Values f(x) at `count` equal steps over [from, to], as a line of a plot.
+template <class F>
+Series curve(const std::string& label, double from, double to, int count, F f) {
+    Series series;
+    series.label = label;
+    for (int i = 0; i < count; ++i) {
+        const double x = from + (to - from) * i / (count - 1);
+        series.x.push_back(x);
+        series.y.push_back(f(x));
+    }
+    return series;
+}
+
+}  // namespace bandlimit::app

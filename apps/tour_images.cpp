@@ -1,0 +1,138 @@
+// Whole images: a zone plate, a star and a photograph.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/pictures.h"
+#include "apps/tour.h"
+#include "bandlimit/analysis/metrics.h"
+#include "bandlimit/resample/resize.h"
+#include "bandlimit/signal/render.h"
+
+namespace bandlimit::app {
+namespace {
+
+const Citation filters{"M. Agopian (pixelflinger)", "Correct application of the Lanczos filter in 2D",
+                       "README of the repository pixelflinger/lanczos-2d", "2025"};
+constexpr int size = 512, half = size / 2, border = half / 20;
+
+struct Contender {
+    const char *name, *file;
+    Kernel kernel;
+};
+std::vector<Contender> contenders() {
+    return {{"box", "box", box()}, {"tent", "tent", tent()}, {"mitchell", "mitchell", mitchell()},
+            {"lanczos3", "lanczos3", lanczos(3)}, {"jinc3", "jinc3", jinc_lanczos(3)}, {"radial-lanczos3 (wrong)", "radial-lanczos3", radial_lanczos(3)}};
+}
+
+/// Mean square of `image` minus `mean` over the pixels that `counts` admits.
+template <class Counts>
+double power(View<const float> image, double mean, Counts counts) {
+    double sum = 0, n = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            if (counts(x, y)) {
+                const double v = static_cast<double>(image(x, y)) - mean;
+                sum += v * v, ++n;
+            }
+    return sum / std::max(1.0, n);
+}
+
+std::string decibels(double ratio) { return fmt::format("{:.1f} dB", 10 * std::log10(ratio)); }
+
+/// Where the zone plate, halved, should be flat: its local frequency along an axis is at least a quarter above what the
+/// new grid can hold.
+bool should_be_flat(int x, int y) {
+    const double reach = std::max(std::abs(x - half / 2), std::abs(y - half / 2)) / (half / 2.0);
+    return reach > 0.625 && std::min(std::min(x, y), std::min(half - 1 - x, half - 1 - y)) >= border;
+}
+
+void zone_plate_part(Tour& tour) {
+    tour.page.section("A zone plate, halved",
+                      "The frequency grows with the distance from the centre and reaches the Nyquist frequency of the source at the border, so the outer half "
+                      "must vanish when the picture is halved: every ring seen there is an alias. The exact answer is known: the same signal behind an ideal "
+                      "low-pass, one integral per row and column.",
+                      filters);
+    const Signal signal = with_range(zone_plate({size, size}), 0.05, 0.95);
+    const Image<float> source = render(signal, size, size, Sampling::point(), tour.parallel);
+    Image<float> exact(half, half);
+    render(signal, {{half, 0, size}, {half, 0, size}}, Sampling::exact(kaiser(80, 10)), exact.view(), tour.parallel);
+    const double signal_power = 0.45 * 0.45 / 2;
+    std::vector<std::vector<std::string>> rows{{"kernel", "PSNR against the exact answer", "alias energy"}};
+    std::vector<Page::Tile> tiles;
+    for (const Contender& c : contenders()) {
+        const Image<float> small = resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
+        const double quality = psnr(small.view(), exact.view(), border), alias = power(small.view(), 0.5, should_be_flat) / signal_power;
+        const std::string file = fmt::format("zoneplate-{}.png", c.file);
+        write_picture(tour.path(file), small.view());
+        tiles.push_back({file, fmt::format("{}: {:.1f} dB, alias {}", c.name, quality, decibels(alias))});
+        rows.push_back({c.name, fmt::format("{:.2f} dB", quality), decibels(alias)});
+        if (c.kernel.name == "lanczos3" || c.kernel.name == "box")
+            tour.page.headline(fmt::format("zone plate halved by {}, against the exact answer", c.name), fmt::format("{:.2f} dB", quality));
+    }
+    write_picture(tour.path("zoneplate-exact.png"), exact.view());
+    tiles.push_back({"zoneplate-exact.png", "exact: ideal low-pass"});
+    const std::string command = "bandlimit pattern zoneplate zoneplate.exr --size 512x512\nbandlimit resize zoneplate.exr half.png --scale 0.5 --kernel lanczos3";
+    tour.page.gallery(tiles, "The zone plate at half its size; look at the corners and the middle of each side.", command, 256);
+    tour.page.table(rows, "PSNR leaves out 5 % at the border. Alias energy is the power where the picture should be flat (from 1.25 times the new Nyquist "
+                          "frequency on), relative to that of the signal.", "");
+}
+
+void star_part(Tour& tour) {
+    tour.page.section("A Siemens star, halved",
+                      "Spokes at all angles: what a filter does to edges of every direction, and how much of the fine middle survives without false "
+                      "patterns. The reference is the star itself behind an ideal low-pass, from 16 x 16 samples per pixel.",
+                      filters);
+    const Signal star = siemens_star({size, size});
+    const Image<float> source = render(star, size, size, Sampling::supersampled(lanczos(3), 8), tour.parallel);
+    Image<float> exact(half, half);
+    render(star, {{half, 0, size}, {half, 0, size}}, Sampling::supersampled(kaiser(16, 8), 16), exact.view(), tour.parallel);
+    std::vector<Page::Tile> tiles;
+    for (const Contender& c : contenders()) {
+        const Image<float> small = resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
+        const std::string file = fmt::format("siemens-{}.png", c.file);
+        write_picture(tour.path(file), small.view());
+        tiles.push_back({file, fmt::format("{}: {:.1f} dB", c.name, psnr(small.view(), exact.view(), border))});
+    }
+    tour.page.gallery(tiles, "The star at half its size, with PSNR against the ideal low-pass (which rings at hard edges: it is a yardstick, not a goal for the eye).",
+                      "bandlimit pattern siemens star.png --size 512x512 --antialias lanczos3\nbandlimit resize star.png half.png --scale 0.5 --kernel mitchell", 256);
+}
+
+double mean_of(View<const float> image) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image(x, y));
+    return sum / image.width / image.height;
+}
+
+void photograph_part(Tour& tour) {
+    tour.page.section("A photograph, halved in linear light and in codes",
+                      "The codes of a picture file are not amounts of light. Averaging them makes fine contrast darker than the scene was; averaging light "
+                      "does not.",
+                      {"B. Wronski", "How (not) to test graphics algorithms", "bartwronski.com", "2019"});
+    const Image<float> photo = read_picture(tour.path("gravel.png"), Space::srgb), codes = read_picture(tour.path("gravel.png"), Space::linear);
+    const Image<float> light = resample(photo.view(), half / 2, half / 2, {}, tour.parallel);
+    Image<float> dark = resample(codes.view(), half / 2, half / 2, {}, tour.parallel);
+    const View<float> v = dark.view();
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) v(x, y) = static_cast<float>(srgb_to_linear(static_cast<double>(v(x, y))));
+    write_picture(tour.path("photo-light.png"), light.view());
+    write_picture(tour.path("photo-codes.png"), dark.view());
+    const double before = mean_of(photo.view());
+    const auto change = [&](const Image<float>& image) { return fmt::format("{:+.2f} %", 100 * (mean_of(image.view()) / before - 1)); };
+    tour.page.gallery({{"photo-light.png", "in linear light: mean light " + change(light)}, {"photo-codes.png", "in codes: mean light " + change(dark)}},
+                      "Gravel at a quarter of its size: averaged as light it stays as bright as it was, averaged as codes it darkens.",
+                      "bandlimit resize gravel.png light.png --scale 0.25\nbandlimit resize gravel.png codes.png --scale 0.25 --space linear", 384);
+    tour.page.headline("mean light of a photograph quartered in linear light / in codes", change(light) + " / " + change(dark));
+}
+
+}  // namespace
+
+void tour_images(Tour& tour) {
+    zone_plate_part(tour);
+    star_part(tour);
+    photograph_part(tour);
+}
+
+}  // namespace bandlimit::app

@@ -1,0 +1,29 @@
+#include "bandlimit/io/oiio.h"
+
+#include <atomic>
+
+#include "bandlimit/core/parallel.h"
+
+namespace bandlimit {
+
+void use_threads(int threads) {
+    static std::atomic<int> in_use{0};
+    const int count = Parallel{threads}.count();
+    if (in_use.exchange(count) == count) return;
+    OIIO::attribute("threads", count);
+    OIIO::attribute("exr_threads", count == 1 ? -1 : count);  // -1: no pool, the caller decodes
+    // We check sizes ourselves, against the memory of this machine and the length of the file.
+    OIIO::attribute("limits:imagesize_MB", 0);
+}
+
+std::string one_line(std::string_view text) {
+    std::string line;
+    for (const char c : text) {
+        if (static_cast<unsigned char>(c) >= ' ') line += c;
+        else if (c == '\n' && !line.empty() && line.back() != ' ') line += ", ";
+    }
+    while (!line.empty() && (line.back() == ' ' || line.back() == ',' || line.back() == '.')) line.pop_back();
+    return line.empty() ? "unknown reason" : line;
+}
+
+}  // namespace bandlimit

@@ -1,0 +1,23 @@
+// Writing PNM and PFM, of which OpenImageIO 2.4 writes 8 bits only. Not for callers.
+#pragma once
+#include "bandlimit/color/depth.h"
+#include "bandlimit/io/atomic_file.h"
+
+namespace bandlimit {
+
+/// Where the rows of a PNM or PFM file lie.
+struct PnmLayout {
+    int width = 0, height = 0;
+    int channels = 1;          ///< 1 grey or 3 RGB
+    Depth depth = Depth::u8;   ///< u8 and u16 make PGM or PPM, f32 PFM
+    std::int64_t start = 0;    ///< of the pixels, in bytes
+};
+
+/// Writes the header, and tells where the rows belong. Failures are remembered by `file`.
+/// source   netpbm: the pages pgm(5), ppm(5); PFM as Debevec's HDR Shop writes it: rows from bottom to top
+PnmLayout write_pnm_header(AtomicFile& file, int width, int height, int channels, Depth depth);
+
+/// Writes the rows of `view`, the first of which is row `y` of the picture.
+void write_pnm_rows(AtomicFile& file, const PnmLayout& layout, int y, const AnyConstView& view);
+
+}  // namespace bandlimit

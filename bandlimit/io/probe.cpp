@@ -1,0 +1,123 @@
+#include "bandlimit/io/probe.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "bandlimit/io/file_error.h"
+#include "bandlimit/io/oiio.h"
+
+namespace bandlimit {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+std::string text_of(int error) { return std::generic_category().message(error); }
+
+File open_regular(const std::string& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        if (error && error != std::errc::no_such_file_or_directory)
+            fail_file(path, "cannot be read: ", error.message(), "; check the path and its permissions");
+        fail_file(path, "does not exist; check the path");
+    }
+    if (fs::is_directory(status)) fail_file(path, "is a directory; name an image file");
+    if (!fs::is_regular_file(status)) fail_file(path, "is a device or a pipe; name an image file");
+    File file(std::fopen(path.c_str(), "rb"));
+    if (!file) fail_file(path, "cannot be read: ", text_of(errno), "; check its permissions");
+    return file;
+}
+
+/// Reads two big-endian bytes; -1 at the end of the file.
+int read_u16(std::FILE* file) {
+    const int high = std::fgetc(file), low = std::fgetc(file);
+    return low == EOF ? -1 : high * 256 + low;
+}
+
+/// The coefficients of a progressive or arithmetic multi-scan JPEG, all of which libjpeg keeps while it decodes; else 0.
+std::uint64_t jpeg_memory(std::FILE* file) {
+    std::fseek(file, 2, SEEK_SET);
+    for (;;) {
+        int marker = std::fgetc(file);
+        if (marker != 0xff) return 0;  // not where a marker should be: libjpeg will say what is wrong
+        while (marker == 0xff) marker = std::fgetc(file);
+        const int length = read_u16(file);
+        if (marker == EOF || length < 2) return 0;
+        const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+        if (is_frame) {
+            const bool is_progressive = (marker & 3) == 2;
+            std::fgetc(file);  // bits of a sample
+            const int height = read_u16(file), width = read_u16(file), components = std::fgetc(file);
+            if (!is_progressive || components == EOF || height < 0 || width < 0) return 0;
+            constexpr std::uint64_t coefficient_bytes = 2;
+            return static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(width) *
+                   static_cast<std::uint64_t>(components) * coefficient_bytes;
+        }
+        if (std::fseek(file, length - 2, SEEK_CUR) != 0) return 0;
+    }
+}
+
+/// Deflate spends at least one bit on a length and one on a distance of at most 258 bytes.
+constexpr std::uint64_t deflate_expansion = 1032;
+/// A code of at most 12 bits stands for a string that is one longer than another code's: at most 4096 bytes.
+constexpr std::uint64_t lzw_expansion = 4096 * 8 / 9;
+/// Runs of up to 128 bytes in two.
+constexpr std::uint64_t run_expansion = 64;
+
+std::uint64_t expansion_of(std::string_view compression) {
+    constexpr std::array<std::pair<std::string_view, std::uint64_t>, 7> bounds{{{"none", 1},
+                                                                                {"packbits", run_expansion},
+                                                                                {"rle", run_expansion},
+                                                                                {"lzw", lzw_expansion},
+                                                                                {"zip", deflate_expansion},
+                                                                                {"zips", deflate_expansion},
+                                                                                {"pxr24", deflate_expansion}}};
+    for (const auto& [name, bound] : bounds)
+        if (name == compression) return bound;
+    return 0;
+}
+
+}  // namespace
+
+Probe probe(const std::string& path) {
+    const File file = open_regular(path);
+    std::array<unsigned char, 32> head{};
+    const std::size_t size = std::fread(head.data(), 1, head.size(), file.get());
+    if (size == 0) fail_file(path, "is empty; name an image file");
+
+    Probe found;
+    found.format = format_of(std::span(head).first(size), path);
+    if (found.format.empty())
+        fail_file(path, "is no image that can be read; PNG, JPEG, TIFF, EXR, HDR, PNM, PFM, WebP, BMP and TGA can");
+    std::error_code error;
+    found.bytes = fs::file_size(path, error);
+
+    constexpr std::size_t png_interlace = 28;  // signature, chunk head, sizes, depth, colour type, two methods
+    found.is_interlaced = found.format == "png" && size > png_interlace && head[png_interlace] != 0;
+    if (found.format == "jpeg") found.memory_to_open = jpeg_memory(file.get());
+    if (found.format == "pnm") found.memory_to_open = found.bytes;
+    return found;
+}
+
+std::uint64_t largest_expansion(const std::string& format, const std::string& compression, std::uint64_t row_bytes) {
+    if (format == "png") return deflate_expansion * 8 * 4;  // one bit of a palette becomes four bytes
+    if (format == "pnm") return 8;                          // eight pixels in a byte
+    if (format == "targa") return run_expansion * 4;        // one byte of a palette becomes four
+    if (format == "hdr") return row_bytes / 4 + 1;          // a row takes four bytes, however wide it is
+    if (format == "tiff") return expansion_of(compression) * 8 * 3;  // one bit of a palette becomes three bytes
+    if (format == "openexr") return expansion_of(compression) * 4;   // half becomes float; pxr24 drops a byte of four
+    return 0;
+}
+
+}  // namespace bandlimit
