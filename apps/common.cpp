@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 namespace bandlimit::app {
 namespace {
@@ -107,6 +108,16 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         begin = comma + 1;
     }
     return numbers;
+}
+
+void check_output_format(const std::string& path, std::optional<Depth> depth) {
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) check_output_path(path);
+    const FormatAbilities format = abilities_of(path);
+    if (!depth || nearest_depth(format, *depth) == *depth) return;
+    std::string depths;
+    for (const Depth d : format.depths) depths += (depths.empty() ? "" : ", ") + std::string(name_of(d));
+    throw UsageError(fmt::format("--depth: {} files cannot hold {}; choose {}", format.name, name_of(*depth), depths));
 }
 
 void print_json(const nlohmann::ordered_json& report) { fmt::print("{}\n", report.dump(2)); }

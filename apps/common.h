@@ -58,6 +58,10 @@ double parse_number(const std::string& option, const std::string& text);
 /// Numbers between commas.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text);
 
+/// Checks what the command line alone shows of an output: that its format is known and holds the depth (UsageError). A
+/// path that exists and is no regular file is refused before that, as a matter of the file system.
+void check_output_format(const std::string& path, std::optional<Depth> depth);
+
 /// Writes `report` to stdout, and nothing else.
 void print_json(const nlohmann::ordered_json& report);
 

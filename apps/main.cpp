@@ -39,6 +39,9 @@ std::optional<int> parse(app::Program& program, int argc, char** argv) {
         app::print_error(e.what());
     } catch (const Error& e) {
         app::print_error(e.what());
+    } catch (const std::exception& e) {  // of the file system: an output that is no regular file
+        app::print_error(e.what());
+        return 1;
     }
     return 2;
 }

@@ -1,7 +1,5 @@
 #include "apps/pictures.h"
 
-#include "bandlimit/core/parallel.h"
-
 namespace bandlimit::app {
 namespace {
 
@@ -34,7 +32,7 @@ void write_picture(const std::string& path, View<const float> linear, Depth dept
     for (int y = 0; y < linear.height; ++y) {
         gather(linear, y, row);
         encode_row(row, false, view_of(stored), 0, writer.encoding());
-        writer.write_rows(as_const(view_of(stored)));
+        writer.write_rows(const_view(view_of(stored)));
     }
     writer.finish();
 }
@@ -48,7 +46,7 @@ Image<float> read_picture(const std::string& path, Space space, Parallel paralle
     const auto row_length = static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.channels());
     for (int y = 0; y < info.height; ++y) {
         reader.read_rows(y, view_of(stored));
-        decode_row(as_const(view_of(stored)), 0, encoding, false, {&image.view()(0, y), row_length});
+        decode_row(const_view(view_of(stored)), 0, encoding, false, {&image.view()(0, y), row_length});
     }
     return image;
 }

@@ -4,6 +4,7 @@
 
 #include "bandlimit/color/depth.h"
 #include "bandlimit/core/image.h"
+#include "bandlimit/core/parallel.h"
 #include "bandlimit/io/image_file.h"
 
 namespace bandlimit::app {

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "apps/common.h"
 #include "apps/resize_stream.h"
@@ -58,14 +57,7 @@ void check(const Options& o) {
     if (!o.region.empty()) parse_region(o.region);
     if (!o.background.empty()) parse_background(o.background);
     if (o.kernel != "auto" && !o.is_taps_file()) parse_kernel(o.kernel);
-    std::error_code ignored;
-    if (std::filesystem::exists(o.out, ignored)) check_output_path(o.out);
-    const FormatAbilities format = abilities_of(o.out);
-    if (o.depth && nearest_depth(format, *o.depth) != *o.depth) {
-        std::string depths;
-        for (const Depth d : format.depths) depths += (depths.empty() ? "" : ", ") + std::string(name_of(d));
-        throw UsageError(fmt::format("--depth: {} files cannot hold {}; choose {}", format.name, name_of(*o.depth), depths));
-    }
+    check_output_format(o.out, o.depth);
 }
 
 int rounded_length(double length) {
@@ -105,7 +97,8 @@ ResizeOptions resize_options(const Options& o) {
     options.antiring = o.antiring;
     options.premultiply = o.premultiply.value_or(o.space != Space::data);
     if (o.is_taps_file()) {
-        const Taps taps = read_taps(o.kernel);
+        const TapsFile file = read_taps(o.kernel);
+        const Taps& taps = taps_of(file, o.kernel);
         double sum = 0;
         for (const double w : taps.weights) sum += w;
         if (std::abs(sum) < 1e-9) options.edge = Edge::reflect;  // nothing to renormalize to

@@ -30,7 +30,7 @@ public:
     }
 
     SourceRows rows(const Encoding& encoding) {
-        return {as_const(rows_of(view_of(image_), 0, end_ - begin_)), begin_, encoding};
+        return {const_view(rows_of(view_of(image_), 0, end_ - begin_)), begin_, encoding};
     }
 
 private:
@@ -91,7 +91,7 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
             if (resizer.run(band.rows(from), {out_rows, y, to, background}, parallel))
                 report.lost_non_finite = true;
         });
-        watch.time(report.write, [&] { writer.write_rows(as_const(out_rows)); });
+        watch.time(report.write, [&] { writer.write_rows(const_view(out_rows)); });
         progress.advance_to(y + count);
     }
 }

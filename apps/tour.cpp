@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include "apps/common.h"
+#include "apps/embedded.h"
 #include "apps/tour.h"
 #include "bandlimit/io/atomic_file.h"
 

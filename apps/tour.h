@@ -29,14 +29,6 @@ void tour_grids(Tour& tour);      ///< down- and upsampling, and where the sampl
 void tour_splines(Tour& tour);    ///< linear, quadratic and cubic interpolation
 void tour_images(Tour& tour);     ///< zone plate, star, photograph
 
-/// The photographs that the program carries: the bytes of a PNG file each.
-struct EmbeddedFile {
-    const char* name;
-    const unsigned char* bytes;
-    std::size_t size;
-};
-std::vector<EmbeddedFile> embedded_photographs();
-
 /// Values f(x) at `count` equal steps over [from, to], as a line of a plot.
 template <class F>
 Series curve(const std::string& label, double from, double to, int count, F f) {

@@ -105,6 +105,7 @@ function(bandlimit_app_tests)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*_test.cpp)
     foreach(source IN LISTS sources)
         cmake_path(GET source STEM name)
+        string(REGEX REPLACE "_test$" "" name ${name})
         bandlimit_test_program(app_${name} apps ${source})
         target_link_libraries(test_app_${name} PRIVATE bandlimit::core bandlimit::io nlohmann_json::nlohmann_json)
         target_compile_definitions(test_app_${name} PRIVATE
@@ -124,6 +125,8 @@ function(bandlimit_consumer_tests)
         add_test(NAME "consumer: ${CMAKE_MATCH_1}" COMMAND ${CMAKE_COMMAND}
             -D BUILD=${PROJECT_BINARY_DIR} -D COMPONENTS=${CMAKE_MATCH_2} -D COMPILER=${CMAKE_CXX_COMPILER}
             -P ${PROJECT_SOURCE_DIR}/cmake/consumer/check.cmake)
+        # Both write the list of installed files.
+        set_tests_properties("consumer: ${CMAKE_MATCH_1}" PROPERTIES RESOURCE_LOCK install TIMEOUT 300)
     endforeach()
 endfunction()
 
@@ -178,15 +181,16 @@ function(bandlimit_benchmarks)
     endforeach()
 endfunction()
 
-# The fuzzers, one per fuzz/*.cpp; what made one fail is kept in fuzz/corpus/NAME. As a test each replays its corpus
+# The fuzzers, one per fuzz/NAME_fuzz.cpp; what made one fail is kept in fuzz/corpus/NAME. As a test each replays its corpus
 # and goes on from there for ten seconds, from the same seed every time.
 function(bandlimit_fuzzers)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
         message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")
     endif()
-    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*.cpp)
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
     foreach(source IN LISTS sources)
         cmake_path(GET source STEM name)
+        string(REGEX REPLACE "_fuzz$" "" name ${name})
         add_executable(fuzz_${name} ${source})
         set_target_properties(fuzz_${name} PROPERTIES
             OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)

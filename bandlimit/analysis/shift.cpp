@@ -24,7 +24,7 @@ constexpr int smallest_axis = 4;
 constexpr double fit_band = 0.25;    // cycles per sample: below most of what down- and upsampling alias or cut
 constexpr double flat = 1e-3;        // share of gradient energy under which a direction holds no structure
 constexpr double oblique = 0.02;     // sine of the angle to an axis from which stripes are not along it
-constexpr double coherent = 0.3;     // agreement of phases below which images are unrelated
+constexpr double coherent = 0.5;     // agreement of phases below which images are unrelated
 
 struct Vec {
     double x = 0, y = 0;
@@ -91,43 +91,42 @@ int fast_size(int n) {
 
 // ---- Spectra ---------------------------------------------------------------------------------------------------------
 
+/// The transform of v under a Hann window, the mean that v has under it removed.
 ComplexGrid tapered_spectrum(View<const float> v) {
     const std::vector<double> wx = hann(v.width), wy = hann(v.height);
+    const auto weight = [&](int x, int y) { return wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)]; };
+    double total = 0, weights = 0;
+    for (int y = 0; y < v.height; ++y)
+        for (int x = 0; x < v.width; ++x) total += weight(x, y) * double(v(x, y)), weights += weight(x, y);
     ComplexGrid grid(v.width, v.height);
     for (int y = 0; y < v.height; ++y)
-        for (int x = 0; x < v.width; ++x)
-            grid.at(x, y) = wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)] * double(v(x, y));
+        for (int x = 0; x < v.width; ++x) grid.at(x, y) = weight(x, y) * (double(v(x, y)) - total / weights);
     fft(grid);
     return grid;
 }
 
-/// Calls visit(f, A, B) for the frequencies within the band that is fitted.
+/// Calls visit(x, y, f) for the bins of a spectrum within the band that is fitted.
 template <class Visit>
-void for_band(const ComplexGrid& a, const ComplexGrid& b, Visit visit) {
-    for (int y = 0; y < a.height; ++y) {
-        const double fy = bin_frequency(y, a.height);
+void for_band(const ComplexGrid& grid, Visit visit) {
+    for (int y = 0; y < grid.height; ++y) {
+        const double fy = bin_frequency(y, grid.height);
         if (std::abs(fy) > fit_band) continue;
-        for (int x = 0; x < a.width; ++x) {
-            const double fx = bin_frequency(x, a.width);
-            if (std::abs(fx) <= fit_band) visit(Vec{fx, fy}, a.at(x, y), b.at(x, y));
+        for (int x = 0; x < grid.width; ++x) {
+            const double fx = bin_frequency(x, grid.width);
+            if (std::abs(fx) <= fit_band) visit(x, y, Vec{fx, fy});
         }
     }
 }
 
-/// The shift of b against a to the nearest sample: the peak of the phase correlation, weighted to low frequencies.
+/// The shift of b against a to the nearest sample: the peak of the correlation, whitened by half, which finds large
+/// shifts as well as small ones, and for periodic images the smallest; weighted to low frequencies.
 Vec coarse_shift(const ComplexGrid& a, const ComplexGrid& b) {
     ComplexGrid cross(a.width, a.height);
-    double strongest = 0;
-    for (std::size_t i = 0; i < cross.values.size(); ++i) {
-        cross.values[i] = b.values[i] * std::conj(a.values[i]);
-        strongest = std::max(strongest, std::abs(cross.values[i]));
-    }
-    const double noise = 1e-6 * strongest;
     for (int y = 0; y < cross.height; ++y)
         for (int x = 0; x < cross.width; ++x) {
             const double fx = bin_frequency(x, cross.width) / fit_band, fy = bin_frequency(y, cross.height) / fit_band;
-            Complex& c = cross.at(x, y);
-            c *= std::exp(-2 * (fx * fx + fy * fy)) / (std::abs(c) + noise);
+            const Complex c = b.at(x, y) * std::conj(a.at(x, y));
+            if (c != 0.0) cross.at(x, y) = c * std::exp(-2 * (fx * fx + fy * fy)) / std::sqrt(std::abs(c));
         }
     inverse_fft(cross);
     const auto peak = std::max_element(cross.values.begin(), cross.values.end(),
@@ -137,12 +136,36 @@ Vec coarse_shift(const ComplexGrid& a, const ComplexGrid& b) {
             bin_frequency(at / cross.width, cross.height) * cross.height};
 }
 
-/// The shift d that explains the phases -2 pi f.d of B conj(A) best: least squares, weighted by cross-power.
+/// Products of two spectra, averaged over the bins around one.
+struct Products {
+    Complex cross;           ///< B conj(A)
+    double aa = 0, bb = 0;   ///< |A|^2 and |B|^2
+    double coherence() const { return aa * bb > 0 ? std::norm(cross) / (aa * bb) : 0; }
+};
+
+Products products_around(const ComplexGrid& a, const ComplexGrid& b, int x, int y) {
+    // Fewer bins than these would always agree; more of a small image would lie too far apart in phase.
+    const int rx = std::min(2, a.width / 16), ry = std::min(2, a.height / 16);
+    Products p;
+    for (int j = y - ry; j <= y + ry; ++j)
+        for (int i = x - rx; i <= x + rx; ++i) {
+            const int u = (i + a.width) % a.width, v = (j + a.height) % a.height;
+            p.cross += b.at(u, v) * std::conj(a.at(u, v));
+            p.aa += std::norm(a.at(u, v));
+            p.bb += std::norm(b.at(u, v));
+        }
+    return p;
+}
+
+/// The shift d that explains the phases -2 pi f.d of B conj(A) best, by least squares. The error of a phase is that of
+/// a coherence g: (1 - g) / g.
 Vec fit_plane(const ComplexGrid& a, const ComplexGrid& b) {
     double xx = 0, xy = 0, yy = 0, px = 0, py = 0;
-    for_band(a, b, [&](Vec f, Complex fa, Complex fb) {
-        const Complex c = fb * std::conj(fa);
-        const double weight = std::abs(c), phase = -std::arg(c) / (2 * pi);
+    for_band(a, [&](int x, int y, Vec f) {
+        const Products p = products_around(a, b, x, y);
+        const double coherence = p.coherence();
+        const double weight = std::abs(p.cross) * coherence / (1 - coherence + 0.01);
+        const double phase = -std::arg(p.cross) / (2 * pi);
         xx += weight * f.x * f.x, xy += weight * f.x * f.y, yy += weight * f.y * f.y;
         px += weight * f.x * phase, py += weight * f.y * phase;
     });
@@ -155,9 +178,10 @@ Vec fit_plane(const ComplexGrid& a, const ComplexGrid& b) {
 
 // ---- Alignment -------------------------------------------------------------------------------------------------------
 
-/// Where two images show the same, and those parts of them.
+/// The parts of two images that show the same.
 struct Aligned {
-    Image<float> a, b;
+    View<const float> a;
+    Image<float> b;
     Vec shift;
 };
 
@@ -175,7 +199,27 @@ Bank shifted_bank(int count, const Axis& axis, double shift) {
                      Edge::reflect);
 }
 
-/// Shifts b back by ever better estimates, until the phases of what is left are flat.
+/// `a` through the zero-phase filter that makes its spectrum most like that of b: what a filter does to the content near
+/// a taper's slope then happens to both images, and cancels.
+Image<float> equalized(View<const float> a, const ComplexGrid& spectrum_a, const ComplexGrid& spectrum_b) {
+    ComplexGrid grid(a.width, a.height);
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) grid.at(x, y) = double(a(x, y));
+    fft(grid);
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) {
+            const Products p = products_around(spectrum_a, spectrum_b, x, y);
+            grid.at(x, y) *= p.aa > 0 ? p.cross.real() / p.aa : 0;
+        }
+    inverse_fft(grid);
+    Image<float> out(a.width, a.height);
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) out.view()(x, y) = static_cast<float>(grid.at(x, y).real());
+    return out;
+}
+
+/// Shifts b back by ever better estimates, until the phases of what is left are flat; then once more against what a
+/// looks like through b's filter.
 Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
     const auto crop = [](View<const float> v, const Axis& x, const Axis& y) {
         return cropped(v, static_cast<int>(x.begin), static_cast<int>(y.begin), x.count, y.count);
@@ -183,18 +227,29 @@ Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
     Axis x = overlap(a.width, 0), y = overlap(a.height, 0);
     Vec shift = coarse_shift(tapered_spectrum(crop(a, x, y)), tapered_spectrum(crop(b, x, y)));
     x = overlap(a.width, shift.x), y = overlap(a.height, shift.y);
-    const ComplexGrid spectrum_a = tapered_spectrum(crop(a, x, y));
     const double limit_x = std::abs(shift.x) + 2, limit_y = std::abs(shift.y) + 2;  // beyond it the crop is another
-    for (int step = 0; step < 8; ++step) {
-        const Image<float> back =
-            run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel);
-        const Vec update = fit_plane(spectrum_a, tapered_spectrum(back.view()));
-        shift.x = std::clamp(shift.x + update.x, -limit_x, limit_x);
-        shift.y = std::clamp(shift.y + update.y, -limit_y, limit_y);
-        if (std::abs(update.x) < 1e-4 && std::abs(update.y) < 1e-4) break;
-    }
-    return {run(shifted_bank(a.width, x, 0), shifted_bank(a.height, y, 0), a, parallel),
-            run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel), shift};
+
+    const View<const float> part = crop(a, x, y);
+    Image<float> back;
+    ComplexGrid spectrum_a = tapered_spectrum(part), spectrum_b;
+    const auto shift_back = [&] {
+        back = run(shifted_bank(a.width, x, shift.x), shifted_bank(a.height, y, shift.y), b, parallel);
+        spectrum_b = tapered_spectrum(back.view());
+    };
+    const auto refine = [&] {
+        for (int step = 0; step < 6; ++step) {
+            const Vec update = fit_plane(spectrum_a, spectrum_b);
+            shift.x = std::clamp(shift.x + update.x, -limit_x, limit_x);
+            shift.y = std::clamp(shift.y + update.y, -limit_y, limit_y);
+            if (std::abs(update.x) < 1e-4 && std::abs(update.y) < 1e-4) return;
+            shift_back();
+        }
+    };
+    shift_back();
+    refine();
+    spectrum_a = tapered_spectrum(equalized(part, spectrum_a, spectrum_b).view());
+    refine();
+    return {part, std::move(back), shift};
 }
 
 // ---- What the images allow to say ------------------------------------------------------------------------------------
@@ -224,9 +279,11 @@ struct Tensor {
 Tensor tensor_of(const Gradient& g) {
     Tensor t;
     const View<const float> gx = g.x.view(), gy = g.y.view();
+    const std::vector<double> wx = hann(gx.width), wy = hann(gx.height);  // borders reflect, and turn gradients there
     for (int y = 0; y < gx.height; ++y)
         for (int x = 0; x < gx.width; ++x) {
-            const double dx = double(gx(x, y)), dy = double(gy(x, y));
+            const double weight = wx[static_cast<std::size_t>(x)] * wy[static_cast<std::size_t>(y)];
+            const double dx = weight * double(gx(x, y)), dy = weight * double(gy(x, y));
             t.xx += dx * dx, t.xy += dx * dy, t.yy += dy * dy;
         }
     const double trace = t.xx + t.yy;
@@ -261,8 +318,8 @@ bool agree(const Gradient& a, const Gradient& b, Vec direction) {
     const ComplexGrid fa = tapered_spectrum(along(a, direction).view());
     const ComplexGrid fb = tapered_spectrum(along(b, direction).view());
     double real = 0, power = 0, squares = 0;
-    for_band(fa, fb, [&](Vec, Complex p, Complex q) {
-        const Complex c = q * std::conj(p);
+    for_band(fa, [&](int x, int y, Vec) {
+        const Complex c = fb.at(x, y) * std::conj(fa.at(x, y));
         real += c.real(), power += std::abs(c), squares += std::norm(c);
     });
     if (!(power > 0)) return false;
@@ -270,7 +327,7 @@ bool agree(const Gradient& a, const Gradient& b, Vec direction) {
     const double coupling = (fa.width > 1 ? 1.5 : 1) * (fa.height > 1 ? 1.5 : 1);
     const double independent = std::max(1.0, power * power / squares / 2 / coupling);
     const double deviation = 1 / std::sqrt(2 * independent);  // of the mean cosine of random phases
-    return real / power >= std::clamp(5 * deviation, coherent, 0.9);
+    return real / power >= std::clamp(5 * deviation, coherent, 0.95);
 }
 
 Shift solve(View<const float> a, View<const float> b, Parallel parallel);
@@ -297,7 +354,7 @@ Shift solve(View<const float> a, View<const float> b, Parallel parallel) {
     if (!is_line && both.least_share < flat) return solve_along(both.most, a, b, parallel);
 
     const Aligned aligned = align(a, b, parallel);
-    const Gradient ga = gradient(aligned.a.view(), parallel), gb = gradient(aligned.b.view(), parallel);
+    const Gradient ga = gradient(aligned.a, parallel), gb = gradient(aligned.b.view(), parallel);
     if (!agree(ga, gb, both.most)) return {};
     if (!is_line && !agree(ga, gb, both.least)) return solve_along(both.most, a, b, parallel);
     Shift shift;

@@ -20,18 +20,20 @@ ShiftWindow shift_window(int width, int height);
 
 /// The shift between two images of the same scene, however each was filtered by something symmetric.
 ///
-/// Mean over channels; phase correlation to the nearest sample; then b is shifted back, and the plane through the phases
-/// of the cross-spectrum below a quarter of the sampling rate (least squares, weighted by cross-power) says by how much
-/// it was wrong, until that is below 1e-4. At the end both tapered images agree, so that the taper adds no bias.
+/// Mean over channels; correlation to the nearest sample; then b is shifted back, and the plane through the phases of
+/// the cross-spectrum below a quarter of the sampling rate (least squares, weighted by cross-power and coherence) says by
+/// how much that was wrong, until it is less than 1e-4. A second round compares b with what a looks like through b's
+/// filter: at the end both tapered images agree, so that the taper adds no bias.
 ///
 /// none     along an axis of less than 4 samples, or along which an image does not vary; along both for images that
 ///          vary in one oblique direction only (stripes: the aperture problem), and for unrelated images: where the
-///          phases of the cross-spectrum of the gradients agree too little, |sum C cos phase| / sum |C| < 0.3, or less
-///          than five standard deviations of what unrelated images of so few independent frequencies would give
-/// accuracy 0.01 samples for images that differ by a shift, symmetric filters and moderate noise; shifts up to about a
-///          third of the window
+///          phases of the cross-spectrum C of the gradients agree too little, Re sum C / sum |C| < 0.5, or less than
+///          five standard deviations of what unrelated images of so few independent frequencies would give (at most
+///          0.95)
+/// accuracy 0.01 samples for images of 100 x 100 and more that differ by a shift and symmetric filters of a few taps; what
+///          their gradients allow under noise. Shifts up to about a third of the window
 /// range    what is not finite counts as 0; the scale of values does not matter
-/// cost     at most about ten FFTs of the window, in double
+/// cost     at most about twenty FFTs of the window, in double
 /// throws   Error if the shapes differ
 /// source   Kuglin & Hines 1975 (phase correlation); the fit of a plane as in Stone et al. 2001
 Shift estimate_shift(View<const float> a, View<const float> b, Parallel parallel = {});

@@ -134,7 +134,8 @@ TEST(Shift, SwapsItsSignWithItsArgumentsAndItsAxesWithTransposition) {
 
 TEST(Shift, SymmetricFiltersDoNotShift) {
     for (const std::uint64_t seed : {6u, 7u, 8u})
-        for (const Image<float>& a : {noise(101, 96, seed), draw(photograph(seed, 100), 101, 96)}) {
+        for (const bool white : {true, false}) {
+            const Image<float> a = white ? noise(201, 196, seed) : draw(photograph(seed, 200), 201, 196);
             const auto through = [&](const Kernel& kernel, double stretch) {
                 const auto bank = [&](int n) {  // by way of fewer samples, or smoothed at the same pitch
                     Taps taps{-12, {}, 1};
@@ -144,10 +145,10 @@ TEST(Shift, SymmetricFiltersDoNotShift) {
                     for (double& w : taps.weights) w /= total;
                     return make_bank(taps, n, Edge::reflect);
                 };
-                return filtered(a.view(), bank(101), bank(96));
+                return filtered(a.view(), bank(201), bank(196));
             };
             expect_shift(a.view(), through(bspline(), 1).view(), 0, 0, promised, "b-spline");
-            expect_shift(a.view(), through(tent(), 4).view(), 0, 0, promised, "tent of 4");
+            expect_shift(a.view(), through(tent(), 3).view(), 0, 0, promised, "tent of 3");
             expect_shift(a.view(), through(lanczos(3), 2).view(), 0, 0, promised, "half-band lanczos");
         }
 }
@@ -182,7 +183,9 @@ TEST(Shift, UnderNoise) {
     for (const auto& v : {a.view(), b.view()})
         for (int y = 0; y < 200; ++y)
             for (int x = 0; x < 200; ++x) v(x, y) += static_cast<float>(random.uniform(-0.0866, 0.0866));  // RMS 0.05
-    expect_shift(a.view(), b.view(), 0.37, -1.21, 0.02);
+    // Gradients of this scene have an RMS near 0.05, and some 0.14 * 200^2 samples count under the taper: noise in both
+    // images cannot but move the estimate by about sqrt(2) * 0.05 / 0.05 / 75 = 0.02; this is four times that.
+    expect_shift(a.view(), b.view(), 0.37, -1.21, 0.08);
 }
 
 TEST(Shift, ReadsChannelsAsTheirMeanAndIgnoresScale) {

@@ -42,7 +42,7 @@ AnyView rows_of(const AnyView& view, int first, int count) {
     return std::visit([&](auto v) -> AnyView { return cropped(v, 0, first, v.width, count); }, view);
 }
 
-AnyConstView as_const(const AnyView& view) {
+AnyConstView const_view(const AnyView& view) {
     return std::visit([](auto v) -> AnyConstView { return View<const std::remove_pointer_t<decltype(v.data)>>(v); },
                       view);
 }

@@ -35,7 +35,7 @@ AnyImage make_image(Depth depth, int width, int height, int channels, Layout lay
 AnyView view_of(AnyImage& image);
 
 /// The same samples, read only.
-AnyConstView as_const(const AnyView& view);
+AnyConstView const_view(const AnyView& view);
 /// Rows [first, first + count) of a view.
 AnyView rows_of(const AnyView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);

@@ -64,11 +64,11 @@ TEST(Depth, ViewsKnowTheirDepth) {
     std::uint16_t code = 7;
     Half half;
     const AnyView u16 = View<std::uint16_t>{&code, 1, 1}, f16 = View<Half>{&half, 1, 1};
-    EXPECT_EQ(depth_of(bandlimit::as_const(AnyView{View<std::uint8_t>{}})), Depth::u8);
-    EXPECT_EQ(depth_of(bandlimit::as_const(u16)), Depth::u16);
-    EXPECT_EQ(depth_of(bandlimit::as_const(f16)), Depth::f16);
-    EXPECT_EQ(depth_of(bandlimit::as_const(AnyView{View<float>{}})), Depth::f32);
-    EXPECT_EQ(std::get<View<const std::uint16_t>>(bandlimit::as_const(u16)).data, &code);
+    EXPECT_EQ(depth_of(const_view(AnyView{View<std::uint8_t>{}})), Depth::u8);
+    EXPECT_EQ(depth_of(const_view(u16)), Depth::u16);
+    EXPECT_EQ(depth_of(const_view(f16)), Depth::f16);
+    EXPECT_EQ(depth_of(const_view(AnyView{View<float>{}})), Depth::f32);
+    EXPECT_EQ(std::get<View<const std::uint16_t>>(const_view(u16)).data, &code);
     EXPECT_EQ(size_of(Depth::u8), 1u);
     EXPECT_EQ(size_of(Depth::u16), 2u);
     EXPECT_EQ(size_of(Depth::f16), 2u);

@@ -29,6 +29,8 @@ public:
     std::int64_t tell() noexcept;
     std::int64_t size() noexcept;
 
+    /// Where the data are until commit(), for codecs that must open a file themselves.
+    const std::string& unfinished() const { return unfinished_; }
     /// Throws if anything failed so far.
     void check() const;
     /// Closes and renames.

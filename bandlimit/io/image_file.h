@@ -93,7 +93,7 @@ struct FormatAbilities {
     bool associated = false;    ///< alpha is stored associated (EXR)
     bool is_linear = false;     ///< holds linear light by convention (EXR, HDR, PFM)
     bool notes_space = false;   ///< can say whether its codes are sRGB or linear (PNG)
-    std::vector<int> channels;    ///< the numbers it holds: 4 are RGBA, 2 grey and alpha; empty = any, each its own
+    std::vector<int> channels = {};  ///< the numbers it holds: 4 are RGBA, 2 grey and alpha; empty = any, each its own
     int largest_channels = 4;
     int largest_side = 0;         ///< pixels; 0 = no limit of its own
 };

@@ -43,12 +43,6 @@ bool is_srgb_profile(std::string_view profile) {
     return profile.find("sRGB") != profile.npos || profile.find(std::string_view("s\0R\0G\0B", 7)) != profile.npos;
 }
 
-bool has_foreign_profile(const OIIO::ImageSpec& spec) {
-    const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
-    if (profile == nullptr) return false;
-    return !is_srgb_profile({static_cast<const char*>(profile->data()), profile->datasize()});
-}
-
 /// OpenImageIO marks what it could have multiplied by alpha; the rest of TIFF and TGA is multiplied in the file.
 bool is_associated(const OIIO::ImageSpec& spec, const std::string& format) {
     if (spec.alpha_channel < 0) return false;
@@ -91,7 +85,8 @@ ImageInfo info_of(const OIIO::ImageSpec& spec, const std::string& format) {
     info.color_hint = color_hint_of(spec, format, info.depth);
     const bool is_linear = info.color_hint == "linear" || (info.color_hint.empty() && !is_integer(info.depth));
     info.transfer = is_linear ? Transfer::linear : Transfer::srgb;
-    info.has_foreign_profile = has_foreign_profile(spec);
+    const std::string_view profile = profile_in(spec.extra_attribs);
+    info.has_foreign_profile = !profile.empty() && !is_srgb_profile(profile);
     return info;
 }
 

@@ -15,8 +15,6 @@
 namespace bandlimit {
 namespace {
 
-using Whole = std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<Half>, Image<float>>;
-
 /// Whether the samples of a row lie as files have them: channels side by side, pixels side by side.
 template <class T>
 bool is_packed(const View<T>& v) {
@@ -100,7 +98,7 @@ private:
     int next_row_ = 0;                ///< of the stored picture; what lies above was read
     std::vector<std::byte> rows_;     ///< the tile row read last, or rows on their way to a view that is not packed
     int first_tile_row_ = -1;         ///< the first row in rows_ if it holds a tile row
-    Whole whole_;                     ///< the stored picture, if it is upside down or sideways
+    AnyImage whole_;                     ///< the stored picture, if it is upside down or sideways
     bool has_whole_ = false;
 };
 
@@ -274,8 +272,8 @@ const ImageReader::Metadata& ImageReader::metadata() const { return state_->meta
 
 void ImageReader::read_rows(int y, const AnyView& view) {
     const ImageInfo& picture = info();
-    if (depth_of(as_const(view)) != picture.depth)
-        fail("read_rows: the view holds ", name_of(depth_of(as_const(view))), "; pass ", name_of(picture.depth));
+    if (depth_of(const_view(view)) != picture.depth)
+        fail("read_rows: the view holds ", name_of(depth_of(const_view(view))), "; pass ", name_of(picture.depth));
     std::visit(
         [&](const auto& to) {
             if (to.width != picture.width || to.channels != picture.channels() || y < 0 || to.height < 0 ||

@@ -16,7 +16,8 @@ namespace bandlimit {
 namespace {
 
 /// What OpenImageIO writes through, so that every failure of the disk reaches us: its own files close silently, and
-/// libjpeg, given a stdio file, ends the process when that is full.
+/// libjpeg, given a stdio file, ends the process when that is full. TIFF cannot be written so: OpenImageIO 2.4 does not
+/// let libtiff read back what it wrote, and the Exif directory, which tells sRGB, needs that.
 class Output final : public OIIO::Filesystem::IOProxy {
 public:
     Output(const std::string& name, AtomicFile& file) : IOProxy(name, Write), file_(file) {}
@@ -45,23 +46,18 @@ bool belongs_to_old_file(const std::string& name) {
     return std::any_of(families.begin(), families.end(), begins) || std::any_of(names.begin(), names.end(), is);
 }
 
-/// Whether a profile that is made for so many colour channels: its header names its colour space at byte 16.
-bool fits_profile(const OIIO::ParamValue& profile, int colours) {
-    constexpr std::size_t at = 16, size = 4;
-    if (profile.datasize() < at + size) return false;
-    const std::string_view space(static_cast<const char*>(profile.data()) + at, size);
-    return space == (colours == 1 ? "GRAY" : "RGB ");
+/// Whether a profile is made for so many colour channels: its header names its colour space at byte 16.
+bool fits_profile(std::string_view profile, int colours) {
+    return profile.size() >= 20 && profile.substr(16, 4) == (colours == 1 ? "GRAY" : "RGB ");
 }
 
 void take_over(const ImageReader::Metadata& metadata, const ImageTarget& target, OIIO::ImageSpec& spec) {
     for (const OIIO::ParamValue& attribute : metadata.attributes)
         if (!belongs_to_old_file(attribute.name().string())) spec.extra_attribs.push_back(attribute);
     // A profile belongs to codes: where those have become linear light, or were none at all, it would be wrong.
-    const auto profile = metadata.attributes.find("ICCProfile");
     const int colours = spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0);
-    if (profile != metadata.attributes.end() && !target.is_data && target.transfer == metadata.transfer &&
-        fits_profile(*profile, colours))
-        spec.extra_attribs.push_back(*profile);
+    if (!target.is_data && target.transfer == metadata.transfer && fits_profile(profile_in(metadata.attributes), colours))
+        spec.extra_attribs.push_back(*metadata.attributes.find("ICCProfile"));
 }
 
 /// The channel that the file will show as alpha: the target's, or, where that is filtered as data, the one so named.
@@ -116,6 +112,16 @@ void check_target(const std::string& path, const ImageTarget& target, const Form
                   " is alpha, and here it is not; choose TIFF or EXR");
 }
 
+/// libtiff writes rows first and then what makes them a file, and of the latter no failure is reported.
+bool is_whole_tiff(const std::string& path, const ImageTarget& target) {
+    const auto in = OIIO::ImageInput::create("tiff");
+    OIIO::ImageSpec spec;
+    if (!in || !in->open(path, spec)) return false;
+    std::vector<std::byte> row(spec.scanline_bytes());
+    return spec.width == target.width && spec.height == target.height &&
+           in->read_scanline(target.height - 1, 0, spec.format, row.data()) && !in->has_error();
+}
+
 }  // namespace
 
 struct ImageWriter::State {
@@ -139,7 +145,7 @@ private:
     std::optional<Output> proxy_;
     OIIO::ImageOutput::unique_ptr output_;  ///< null for PNM
     PnmLayout pnm_;
-    bool is_open_ = false;
+    bool is_tiff_ = false;
 };
 
 ImageWriter::State::State(const std::string& path_to_write, const ImageTarget& wanted, int threads)
@@ -161,12 +167,12 @@ ImageWriter::State::State(const std::string& path_to_write, const ImageTarget& w
     output_ = OIIO::ImageOutput::create(format.name);
     if (!output_) fail_file(path, "no writer for ", format.name, " is installed; ", one_line(OIIO::geterror()));
     output_->threads(threads);
-    proxy_.emplace(path, *file_);
-    guarded([&] {
+    is_tiff_ = format.name == "tiff";
+    if (!is_tiff_) {
+        proxy_.emplace(path, *file_);
         output_->set_ioproxy(&*proxy_);
-        return output_->open(path, spec_of(target, format));
-    });
-    is_open_ = true;
+    }
+    guarded([&] { return output_->open(is_tiff_ ? file_->unfinished() : path, spec_of(target, format)); });
     target.metadata = nullptr;  // the caller may drop it now
 }
 
@@ -230,6 +236,7 @@ void ImageWriter::State::finish() {
     if (next_row != target.height)
         fail("ImageWriter: ", path, ": finish() after ", next_row, " of ", target.height, " rows; write them all");
     if (output_) guarded([&] { return output_->close(); });
+    if (is_tiff_) guarded([&] { return is_whole_tiff(file_->unfinished(), target); });
     output_.reset();
     proxy_.reset();
     file_->commit();

@@ -16,6 +16,12 @@ void use_threads(int threads) {
     OIIO::attribute("limits:imagesize_MB", 0);
 }
 
+std::string_view profile_in(const OIIO::ParamValueList& attributes) {
+    const auto profile = attributes.find("ICCProfile");
+    if (profile == attributes.end() || profile->type().basetype != OIIO::TypeDesc::UINT8) return {};
+    return {static_cast<const char*>(profile->data()), static_cast<std::size_t>(profile->datasize())};
+}
+
 std::string one_line(std::string_view text) {
     std::string line;
     for (const char c : text) {

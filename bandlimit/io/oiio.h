@@ -24,6 +24,9 @@ void use_threads(int threads);
 /// An error text of a codec as part of one line; "unknown reason" for an empty one.
 std::string one_line(std::string_view text);
 
+/// The bytes of an ICC profile among the attributes of a file, or nothing.
+std::string_view profile_in(const OIIO::ParamValueList& attributes);
+
 /// a * b, or the largest number if that is larger.
 constexpr std::uint64_t saturating_product(std::uint64_t a, std::uint64_t b) {
     constexpr auto largest = std::numeric_limits<std::uint64_t>::max();

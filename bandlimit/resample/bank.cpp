@@ -31,23 +31,32 @@ double overlap(double a0, double a1, double b0, double b1) {
     return std::max(0.0, std::min(a1, b1) - std::max(a0, b0));
 }
 
-PhaseRow sampled_row(const Kernel& kernel, double fraction, double stretch) {
+/// Sample s sees the kernel at (s * units - offset) / span. These are integers where sizes are: what lies on a jump of the
+/// kernel, or halfway, lies there exactly, and mirrored outputs have mirrored weights.
+struct Footing {
+    double offset, units, span;
+};
+
+PhaseRow sampled_row(const Kernel& kernel, const Footing& at) {
     PhaseRow row;
     if (kernel.form == Kernel::Form::nearest) {
-        row.first = fraction >= 0.5 ? 1 : 0;
+        row.first = 2 * at.offset >= at.units ? 1 : 0;
         row.weights = {1};
         row.near_first = row.near_last = row.first;
         return row;
     }
-    const bool area = kernel.form == Kernel::Form::area && stretch > 1;
+    const bool area = kernel.form == Kernel::Form::area && at.span > at.units;
     // A cell that overlaps the target's cell may have its centre up to half a cell outside it.
-    const double radius = kernel.radius * stretch + (area ? 0.5 : 0);
-    row.first = static_cast<int>(std::ceil(fraction - radius));
-    for (int s = row.first; s <= fraction + radius; ++s)
-        row.weights.push_back(area ? overlap(s - 0.5, s + 0.5, fraction - stretch / 2, fraction + stretch / 2)
-                                   : kernel.value((s - fraction) / stretch));
-    row.near_first = static_cast<int>(std::floor(fraction - stretch)) + 1;
-    row.near_last = static_cast<int>(std::ceil(fraction + stretch)) - 1;
+    const double half_cell = at.units / 2, radius = kernel.radius * at.span + (area ? half_cell : 0);
+    row.first = static_cast<int>(std::ceil((at.offset - radius) / at.units));
+    const int last = static_cast<int>(std::floor((at.offset + radius) / at.units));
+    for (int s = row.first; s <= last; ++s) {
+        const double x = s * at.units - at.offset;
+        row.weights.push_back(area ? overlap(x - half_cell, x + half_cell, -at.span / 2, at.span / 2)
+                                   : kernel.value(x / at.span));
+    }
+    row.near_first = static_cast<int>(std::floor((at.offset - at.span) / at.units)) + 1;
+    row.near_last = static_cast<int>(std::ceil((at.offset + at.span) / at.units)) - 1;
     trim_zeros(row);
     return row;
 }
@@ -55,11 +64,11 @@ PhaseRow sampled_row(const Kernel& kernel, double fraction, double stretch) {
 double sum_of(std::span<const double> w) { return std::accumulate(w.begin(), w.end(), 0.0); }
 
 /// Appends weights as floats. Each carries the rounding of those before it, so that the sum of the floats is the sum of
-/// the doubles to the rounding of the last one.
+/// the doubles to the rounding of the last one. Zeros stay zeros.
 void append_rounded(std::vector<float>& to, std::span<const double> weights) {
     double carry = 0;
     for (const double w : weights) {
-        const float rounded = static_cast<float>(w + carry);
+        const float rounded = w == 0 ? 0 : static_cast<float>(w + carry);
         carry += w - static_cast<double>(rounded);
         to.push_back(rounded);
     }
@@ -80,36 +89,37 @@ public:
         const bool cut = bank_.edge == Edge::zero || bank_.edge == Edge::renormalize;
         if (cut && (first < 0 || last >= bank_.inputs)) return add_cut(at, row, first);
         auto [entry, is_new] = row_of_phase_.try_emplace(at.phase, static_cast<int>(bank_.rows.size()));
-        if (is_new) append_row(row.weights, row, row.first);
+        if (is_new) append_row(row);
         bank_.outputs.push_back({first, entry->second});
     }
 
     Bank take() { return std::move(bank_); }
 
 private:
-    void append_row(std::span<const double> weights, const PhaseRow& row, int first) {
-        const int count = static_cast<int>(weights.size());
-        const int near_begin = std::clamp(row.near_first - first, 0, count - 1);
-        const int near_end = std::clamp(row.near_last - first + 1, near_begin + 1, count);
+    void append_row(const PhaseRow& row) {
+        const int count = static_cast<int>(row.weights.size());
+        const int near_begin = std::clamp(row.near_first - row.first, 0, count - 1);
+        const int near_end = std::clamp(row.near_last - row.first + 1, near_begin + 1, count);
         bank_.rows.push_back({bank_.weights.size(), count, near_begin, near_end - near_begin});
-        append_rounded(bank_.weights, weights);
+        append_rounded(bank_.weights, row.weights);
     }
 
     /// A row of its own for an output that reaches outside, with only what lies inside.
     void add_cut(const Position& at, const PhaseRow& row, int first) {
         const int skip = std::max(0, -first);
         const int keep = std::min(static_cast<int>(row.weights.size()), bank_.inputs - first) - skip;
-        std::vector<double> weights;
-        if (keep > 0) weights.assign(row.weights.begin() + skip, row.weights.begin() + skip + keep);
-        const double sum = sum_of(weights), whole_sum = sum_of(row.weights);
-        if (weights.empty() || (bank_.edge == Edge::renormalize && std::abs(sum) < 1e-9))
+        PhaseRow inside{row.first + skip, {}, row.near_first, row.near_last};
+        if (keep > 0) inside.weights.assign(row.weights.begin() + skip, row.weights.begin() + skip + keep);
+        trim_zeros(inside);
+        const double sum = sum_of(inside.weights), whole_sum = sum_of(row.weights);
+        if (inside.weights.empty() || (bank_.edge == Edge::renormalize && std::abs(sum) < 1e-9))
             fail("make_bank: output ", bank_.outputs.size(), " lies at source sample ",
                  static_cast<double>(at.whole) + at.fraction, " of ", bank_.inputs,
                  " and has no weight inside; use Edge::clamp, or axes that overlap");
         if (bank_.edge == Edge::renormalize)
-            for (double& w : weights) w *= whole_sum / sum;
-        bank_.outputs.push_back({first + skip, static_cast<int>(bank_.rows.size())});
-        append_row(weights, row, row.first + skip);
+            for (double& w : inside.weights) w *= whole_sum / sum;
+        bank_.outputs.push_back({static_cast<int>(at.whole) + inside.first, static_cast<int>(bank_.rows.size())});
+        append_row(inside);
     }
 
     Bank bank_;
@@ -137,18 +147,26 @@ void check_separable(const Kernel& kernel) {
              " is radial, not separable; resample with radial.h, or choose a separable kernel");
 }
 
+/// Indices, and the number of weights of a row, must fit an int.
+void check_reach(const Kernel& kernel, const Mapping& mapping) {
+    const double reach = kernel.radius * mapping.stretch();
+    if (reach > 1 << 29)
+        fail("make_bank: ", kernel.name, " would reach over ", reach, " samples to either side; pass more outputs");
+}
+
 }  // namespace
 
 Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge) {
     check_separable(kernel);
     const Mapping mapping(src, dst);
+    check_reach(kernel, mapping);
     Builder builder(src.count, dst.count, edge);
     std::map<std::int64_t, PhaseRow> known;
     for (int i = 0; i < dst.count; ++i) {
         const Position at = mapping(i);
         auto [entry, is_new] = known.try_emplace(at.phase);
         if (is_new) {
-            entry->second = sampled_row(kernel, at.fraction, mapping.stretch());
+            entry->second = sampled_row(kernel, {at.offset, mapping.units(), mapping.span()});
             normalise(entry->second, kernel);
         }
         builder.add(at, entry->second);
@@ -187,8 +205,9 @@ Bank make_bank(const Taps& taps, int count, Edge edge) {
 
 PhaseWeights weights_at(const Kernel& kernel, double phase) {
     check_separable(kernel);
+    if (!(std::abs(phase) <= 1 << 30)) fail("weights_at: phase = ", phase, "; pass a number of source samples");
     const double whole = std::floor(phase);
-    PhaseRow row = sampled_row(kernel, phase - whole, 1);
+    PhaseRow row = sampled_row(kernel, {phase - whole, 1, 1});
     const double sum = sum_of(row.weights);
     normalise(row, kernel);
     return {{row.first + static_cast<int>(whole), row.weights, 1}, sum};

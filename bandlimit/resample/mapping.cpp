@@ -14,9 +14,15 @@ struct Ratio {
     std::int64_t p = 0, q = 0;
 };
 
-/// The simplest fraction within a few roundings of r; q = 0 if there is none with modest numbers.
-Ratio as_ratio(double r) {
-    constexpr double tolerance = 1e-13;
+/// The relative error of the pitch of an axis, and the error of its begin in pitches, if both ends carry a few roundings,
+/// as those of a part of another axis do.
+double uncertainty(const Axis& axis) {
+    constexpr double roundings = 16 * 0x1p-53;
+    return roundings * (1 + (std::abs(axis.begin) + std::abs(axis.end)) / std::abs(axis.end - axis.begin));
+}
+
+/// The simplest fraction within the relative tolerance of r; q = 0 if there is none with modest numbers.
+Ratio as_ratio(double r, double tolerance) {
     constexpr std::int64_t largest_q = 1 << 20, largest_p = 1 << 30;
     // Continued fraction: each convergent is the best approximation for its denominator.
     std::int64_t p0 = 0, q0 = 1, p1 = 1, q1 = 0;
@@ -51,28 +57,34 @@ void check(const Axis& src, const Axis& dst) {
 Mapping::Mapping(const Axis& src, const Axis& dst) : src_(src), dst_(dst) {
     check(src, dst);
     step_ = dst.pitch() / src.pitch();
-    const Ratio ratio = as_ratio(step_);
+    const Ratio ratio = as_ratio(step_, uncertainty(src) + uncertainty(dst));
     p_ = ratio.p, q_ = ratio.q;
     if (q_ == 0) return;
+    step_ = static_cast<double>(p_) / static_cast<double>(q_);
     // t(i) = s + (i + 1/2) p/q - 1/2 is a multiple of 1/(2q) but for the shift s of the intervals.
     units_ = 2 * q_;
     const double shift = (dst.begin - src.begin) / src.pitch() * static_cast<double>(units_);
     const double snapped = std::round(shift);
-    const bool exact = std::abs(shift - snapped) <= 1e-12 * std::max(1.0, std::abs(shift));
+    const double cells = uncertainty(src) * src.count + uncertainty(dst) * dst.count * std::abs(step_);
+    const bool exact = std::abs(shift - snapped) <= cells * static_cast<double>(units_);
     shift_ = static_cast<std::int64_t>(exact ? snapped : std::floor(shift));
     shift_fraction_ = exact ? 0 : shift - std::floor(shift);
 }
 
-double Mapping::stretch() const { return std::max(1.0, std::abs(step_)); }
+double Mapping::span() const {
+    if (q_ == 0) return std::max(1.0, std::abs(step_));
+    return static_cast<double>(std::max(units_, 2 * std::abs(p_)));
+}
 
 Position Mapping::operator()(int output) const {
     if (q_ == 0) {
         const double t = src_.index(dst_.position(output)), whole = std::floor(t);
-        return {static_cast<std::int64_t>(whole), t - whole, output};
+        return {static_cast<std::int64_t>(whole), t - whole, output, t - whole};
     }
     const std::int64_t at = (2 * std::int64_t{output} + 1) * p_ - q_ + shift_;
     const std::int64_t whole = floor_divide(at, units_), phase = at - whole * units_;
-    return {whole, (static_cast<double>(phase) + shift_fraction_) / static_cast<double>(units_), phase};
+    const double offset = static_cast<double>(phase) + shift_fraction_;
+    return {whole, offset / units(), phase, offset};
 }
 
 }  // namespace bandlimit

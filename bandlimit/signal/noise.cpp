@@ -42,11 +42,17 @@ int keep_band(ComplexGrid& spectrum, double cutoff) {
     return kept;
 }
 
+void check_noise(int width, int height, const BandLimitedNoiseOptions& options) {
+    const char* const function = "band_limited_noise";
+    check_option(function, "cutoff", options.cutoff, 1e-9, 16, "up to 16 cycles per pixel, above 0");
+    check_option(function, "rms", options.rms, 1e-9, 1e9, "a number above 0; 0.1 is usual");
+    const int longest = (1 << 30) / Field::sampling_factor(options.cutoff);
+    if (width < 1 || height < 1 || width > longest || height > longest)
+        fail(function, ": size ", width, " x ", height, "; pass 1 to ", longest, " pixels each way");
+}
+
 Field make_field(int width, int height, const BandLimitedNoiseOptions& options) {
     const int factor = Field::sampling_factor(options.cutoff);
-    if (std::max(width, height) > (1 << 30) / factor)
-        fail("band_limited_noise: size ", width, " x ", height, "; pass at most ", (1 << 30) / factor,
-             " pixels a side");
     Field field{factor, ComplexGrid(width * factor, height * factor)};
     Random random(options.seed);
     for (std::complex<double>& value : field.samples.values) value = random.uniform(-1, 1);
@@ -64,14 +70,14 @@ Field make_field(int width, int height, const BandLimitedNoiseOptions& options) 
 
 /// The samples of a periodic row that a position between them is made of.
 struct Neighbours {
-    static constexpr int radius = 8;
+    static constexpr int radius = 9;
     int first = 0, count = 1;
     double weights[2 * radius] = {1};
 
     /// The interpolator need only pass a quarter of the sampling rate and stop three quarters: this window does so to
-    /// -120 dB.
+    /// -130 dB.
     Neighbours(double index) {
-        static const Kernel kernel = kaiser(radius, 12.5);
+        static const Kernel kernel = kaiser(radius, 13.8);
         const double whole = std::floor(index), fraction = index - whole;
         first = static_cast<int>(whole);
         if (fraction == 0) return;  // a sample itself, as every centre of a pixel is
@@ -103,10 +109,7 @@ Signal white_noise(const WhiteNoiseOptions& options) {
 }
 
 Signal band_limited_noise(int width, int height, const BandLimitedNoiseOptions& options) {
-    if (width < 1 || height < 1)
-        fail("band_limited_noise: size ", width, " x ", height, "; pass at least 1 pixel each way");
-    check_option("band_limited_noise", "cutoff", options.cutoff, 1e-9, 16, "up to 16 cycles per pixel, above 0");
-    check_option("band_limited_noise", "rms", options.rms, 1e-9, 1e9, "a number above 0; 0.1 is usual");
+    check_noise(width, height, options);
     const auto field = std::make_shared<const Field>(make_field(width, height, options));
     // Pixel centres lie on the samples that are multiples of the factor.
     const Axis pixels{1, 0, 1};
@@ -114,6 +117,14 @@ Signal band_limited_noise(int width, int height, const BandLimitedNoiseOptions& 
         return 0.5 + interpolate(*field, {pixels.index(x) * field->factor}, {pixels.index(y) * field->factor});
     };
     return {"noise", value, nullptr, {}};
+}
+
+std::uint64_t band_limited_noise_bytes(int width, int height, const BandLimitedNoiseOptions& options) {
+    check_noise(width, height, options);
+    const auto side = [factor = Field::sampling_factor(options.cutoff)](int pixels) {
+        return static_cast<std::uint64_t>(pixels) * static_cast<std::uint64_t>(factor);
+    };
+    return side(width) * side(height) * sizeof(std::complex<double>);
 }
 
 }  // namespace bandlimit

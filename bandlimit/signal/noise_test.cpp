@@ -137,6 +137,13 @@ TEST(BandLimitedNoise, RefusesWrongOptions) {
     EXPECT_THROW(band_limited_noise(5, 5, {.cutoff = 0.1}), Error);  // below one period in the frame
     EXPECT_THROW(band_limited_noise(5, 5, {.rms = 0}), Error);
     EXPECT_THROW(band_limited_noise(2147483647, 1, {}), Error);
+    EXPECT_THROW(band_limited_noise_bytes(5, -5), Error);
+}
+
+TEST(BandLimitedNoise, TellsItsMemory) {
+    EXPECT_EQ(band_limited_noise_bytes(100, 50), 100u * 50 * 16);
+    EXPECT_EQ(band_limited_noise_bytes(100, 50, {.cutoff = 0.5}), 4u * 100 * 50 * 16);
+    EXPECT_EQ(band_limited_noise_bytes(1 << 20, 1 << 20), std::uint64_t{16} << 40);
 }
 
 }  // namespace

@@ -85,14 +85,12 @@ void draw_product(const WaveProduct& product, const Kernel& kernel, const Grid& 
     });
 }
 
+bool has_product_form(const Signal& signal, const Kernel& kernel) {
+    return signal.product && !is_radial(kernel) && kernel.form != Kernel::Form::nearest;
+}
+
 void draw_exact(const Signal& signal, const Kernel& kernel, const Grid& grid, View<float> image, Parallel parallel) {
-    if (signal.product && !is_radial(kernel) && kernel.form != Kernel::Form::nearest)
-        return draw_product(*signal.product, kernel, grid, image, parallel);
-    if (kernel.form != Kernel::Form::area)
-        fail("render: ", signal.name, " has no exact form under ", kernel.name,
-             "; supersample it, or use a separable kernel with zoneplate, sinusoidal stripes, or a chirp along x or y");
-    if (!signal.mean)
-        fail("render: ", signal.name, " has no exact form; supersample it, or use one of ", exact_signals());
+    if (has_product_form(signal, kernel)) return draw_product(*signal.product, kernel, grid, image, parallel);
     fill(image, parallel, [&](int x, int y) { return signal.mean(cell_at(grid, x, y)); });
 }
 
@@ -107,14 +105,20 @@ Axis fine_axis(const Axis& axis, const Kernel& kernel, int samples) {
     return fine;
 }
 
+Grid fine_grid(const Grid& grid, const Sampling& sampling) {
+    return {fine_axis(grid.x, sampling.kernel, sampling.samples), fine_axis(grid.y, sampling.kernel, sampling.samples)};
+}
+
+/// How many rows of the image to make at a time.
+int block_height(const Grid& fine, int samples) {
+    return std::max(smallest_block, block_samples / fine.x.count / samples);
+}
+
 void draw_supersampled(const Signal& signal, const Sampling& sampling, const Grid& grid, View<float> image,
                        Parallel parallel) {
-    if (sampling.kernel.form == Kernel::Form::nearest)
-        fail("render: nearest takes one sample of a pixel; use Sampling::point(), or another kernel");
-    const Grid fine{fine_axis(grid.x, sampling.kernel, sampling.samples),
-                    fine_axis(grid.y, sampling.kernel, sampling.samples)};
+    const Grid fine = fine_grid(grid, sampling);
     const Resizer resizer(fine, grid, 1, {.reconstruction = sampling.kernel, .edge = Edge::clamp});
-    const int block = std::max(smallest_block, static_cast<int>(block_samples / fine.x.count / sampling.samples));
+    const int block = block_height(fine, sampling.samples);
     for (int first = 0; first < image.height; first += block) {
         const int last = std::min(first + block, image.height);
         const IndexRange needed = resizer.rows_needed(first, last);
@@ -125,12 +129,10 @@ void draw_supersampled(const Signal& signal, const Sampling& sampling, const Gri
     }
 }
 
-void check_render(const Grid& grid, const Sampling& sampling, const View<float>& image) {
+void check_shape(const Grid& grid, const View<float>& image) {
     if (image.width != grid.x.count || image.height != grid.y.count || image.channels != 1)
         fail("render: a grid of ", grid.x.count, " x ", grid.y.count, " and an image of ", image.width, " x ",
              image.height, " x ", image.channels, "; sizes must be equal, with 1 channel");
-    if (sampling.samples < 1 || sampling.samples > 1024)
-        fail("render: samples = ", sampling.samples, "; pass 1 to 1024 per pixel and axis");
     for (const Axis& axis : {grid.x, grid.y})
         if (axis.count > 0 && !(std::isfinite(axis.pitch()) && axis.pitch() != 0))
             fail("render: an axis from ", axis.begin, " to ", axis.end, "; pass finite ends that differ");
@@ -138,8 +140,37 @@ void check_render(const Grid& grid, const Sampling& sampling, const View<float>&
 
 }  // namespace
 
+void check_sampling(const Signal& signal, const Sampling& sampling) {
+    const Kernel& kernel = sampling.kernel;
+    if (sampling.mode == Sampling::Mode::supersampled) {
+        if (sampling.samples < 1 || sampling.samples > 1024)
+            fail("render: samples = ", sampling.samples, "; pass 1 to 1024 per pixel and axis");
+        if (kernel.form == Kernel::Form::nearest)
+            fail("render: nearest takes one sample of a pixel; use point sampling, or another kernel");
+    }
+    if (sampling.mode == Sampling::Mode::exact && !has_product_form(signal, kernel)) {
+        if (kernel.form != Kernel::Form::area)
+            fail("render: ", signal.name, " has no exact form under ", kernel.name,
+                 "; supersample it, or use a separable kernel with zoneplate, sinusoidal stripes, or a chirp along x "
+                 "or y");
+        if (!signal.mean)
+            fail("render: ", signal.name, " has no exact form; supersample it, or use one of ", exact_signals());
+    }
+}
+
+std::uint64_t rendering_bytes(const Grid& grid, const Sampling& sampling) {
+    const auto size = [](double samples) { return static_cast<std::uint64_t>(samples * sizeof(float)); };
+    if (sampling.mode != Sampling::Mode::supersampled)
+        return 4 * size(grid.x.count) + 4 * size(grid.y.count);  // of a product: a complex double each
+    const Grid fine = fine_grid(grid, sampling);
+    const int rows = std::min(block_height(fine, sampling.samples), grid.y.count);
+    // Once for the fine rows, and at most as much again for the filter's own copies of some of them.
+    return 2 * size((rows + 2 * std::ceil(sampling.kernel.radius)) * sampling.samples * fine.x.count);
+}
+
 void render(const Signal& signal, const Grid& grid, const Sampling& sampling, View<float> image, Parallel parallel) {
-    check_render(grid, sampling, image);
+    check_shape(grid, image);
+    check_sampling(signal, sampling);
     if (image.width == 0 || image.height == 0) return;
     switch (sampling.mode) {
         case Sampling::Mode::point: return draw_points(signal, grid, image, parallel);

@@ -50,6 +50,12 @@ struct Sampling {
 void render(const Signal& signal, const Grid& grid, const Sampling& sampling, View<float> image,
             Parallel parallel = {});
 
+/// Throws the Error with which render() would refuse this signal with this sampling.
+void check_sampling(const Signal& signal, const Sampling& sampling);
+
+/// About how many bytes render() takes for an image of `grid`, beside the image itself.
+std::uint64_t rendering_bytes(const Grid& grid, const Sampling& sampling);
+
 /// The image [0, width] x [0, height] of `signal`.
 ///
 /// example  render(zone_plate({512, 512}), 512, 512, Sampling::exact())

@@ -76,7 +76,7 @@ Signal zone_plate(const Frame& frame, const ZonePlateOptions& options = {});
 struct SiemensStarOptions {
     int spokes = 72;                    ///< >= 1 bright ones
     double phase = 0;                   ///< turns the star by this share of the angle between two spokes
-    bool hard = true;                   ///< 0 or 1; else a sinusoid around the centre
+    bool sinusoid = false;              ///< a smooth wave around the centre instead of 0 and 1
     std::optional<Point> center = {};   ///< default: the middle of the frame
     std::optional<double> radius = {};  ///< > 0; default: half the shorter side
 };
@@ -172,5 +172,8 @@ struct BandLimitedNoiseOptions {
     double rms = 0.1;      ///< > 0: root of the mean square of the difference to 1/2
 };
 Signal band_limited_noise(int width, int height, const BandLimitedNoiseOptions& options = {});
+
+/// How many bytes that noise takes as long as it lives.
+std::uint64_t band_limited_noise_bytes(int width, int height, const BandLimitedNoiseOptions& options = {});
 
 }  // namespace bandlimit

@@ -37,7 +37,7 @@ std::vector<Signal> all_signals(const Frame& f) {
     const int width = static_cast<int>(f.width), height = static_cast<int>(f.height);
     return {zone_plate(f, {.max_frequency = 0.4, .phase = 0.1}),
             siemens_star(f, {.spokes = 9, .phase = 0.3}),
-            siemens_star(f, {.spokes = 9, .phase = 0.3, .hard = false}),
+            siemens_star(f, {.spokes = 9, .phase = 0.3, .sinusoid = true}),
             chirp(f),
             chirp(f, {.angle = 33, .phase = 0.2}),
             chirp(f, {.from = 0.4, .to = 0.01, .exponential = true, .angle = 90}),
@@ -189,8 +189,8 @@ TEST(SiemensStar, HasItsSpokes) {
 }
 
 TEST(SiemensStar, PhaseTurnsIt) {
-    const Signal star = siemens_star({100, 100}, {.spokes = 10, .hard = false});
-    const Signal turned = siemens_star({100, 100}, {.spokes = 10, .phase = 0.25, .hard = false});
+    const Signal star = siemens_star({100, 100}, {.spokes = 10, .sinusoid = true});
+    const Signal turned = siemens_star({100, 100}, {.spokes = 10, .phase = 0.25, .sinusoid = true});
     const double turn = 2 * pi * 0.25 / 10;
     for (double angle = 0; angle < 6; angle += 0.1)
         EXPECT_NEAR(star.value(50 + 20 * std::cos(angle), 50 + 20 * std::sin(angle)),

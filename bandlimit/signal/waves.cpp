@@ -47,10 +47,8 @@ struct Sweep {
     double periods(double t) const { return periods_inside(inside(t)) + (t - inside(t)) * frequency(t); }
 
 private:
-    /// Beyond some place the frequency stays: an exponential chirp soon leaves what numbers can hold.
-    double inside(double t) const {
-        return exponential ? std::clamp(t, 0.0, length) : std::clamp(t, -length, 2 * length);
-    }
+    /// A frame away from the frame the frequency stays: an exponential chirp soon leaves what numbers can hold.
+    double inside(double t) const { return std::clamp(t, -length, 2 * length); }
     double periods_inside(double t) const {
         if (!exponential) return (from + (to - from) * t / length / 2) * t;
         const double growth = std::log(to / from);
@@ -102,12 +100,12 @@ Signal siemens_star(const Frame& frame, const SiemensStarOptions& options) {
     const double radius = radius_of("siemens_star", options.radius, std::min(frame.width, frame.height) / 2);
     check_option("siemens_star", "spokes", options.spokes, 1, 1e6, "1 to 1000000 bright spokes");
     check_phase("siemens_star", options.phase);
-    const auto value = [center, radius, spokes = options.spokes, phase = options.phase, hard = options.hard](double x,
-                                                                                                             double y) {
+    const auto value = [center, radius, spokes = options.spokes, phase = options.phase, sinusoid = options.sinusoid](
+                           double x, double y) {
         const double dx = x - center.x, dy = y - center.y, r = std::hypot(dx, dy);
         if (r > radius || r == 0) return 0.5;
         const double wave = cosine(spokes * std::atan2(dy, dx) / (2 * pi) - phase);
-        if (!hard) return 0.5 + 0.5 * wave;
+        if (sinusoid) return 0.5 + 0.5 * wave;
         return wave > 0 ? 1.0 : wave < 0 ? 0.0 : 0.5;
     };
     return {"siemens", value, nullptr, {}};
@@ -133,12 +131,13 @@ Signal chirp(const Frame& frame, const ChirpOptions& options) {
     if (direction.x == 0 || direction.y == 0) {
         const double sign = direction.x + direction.y;
         const Wave wave{[=](double x) { return 0.5 * oscillation(periods(sign * x)); },
-                        [=](double x) { return sweep.frequency(sign * x - begin); }};
+                        [=](double x) { return std::abs(sweep.frequency(sign * x - begin)); }};
         return product_signal("chirp", value, plane_product(direction, wave));
     }
     const auto mean = [=](const Cell& cell) {
         const auto [low, high] = extent_along(cell, direction);
-        const double highest = std::max(sweep.frequency(low - begin), sweep.frequency(high - begin));
+        const double highest =
+            std::max(std::abs(sweep.frequency(low - begin)), std::abs(sweep.frequency(high - begin)));
         return mean_along(cell, direction, along, {}, highest);
     };
     return {"chirp", value, mean, {}};

@@ -1,0 +1,43 @@
+// Figures of curves, drawn by gnuplot.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bandlimit::app {
+
+/// Values over positions. Those that are not finite leave a gap.
+struct Series {
+    enum class Style {
+        line,
+        points,  ///< a mark each
+        stems    ///< a mark each, and a line down to 0: discrete weights
+    };
+
+    std::string label;  ///< in the legend; none if empty
+    std::vector<double> x, y;
+    Style style = Style::line;
+};
+
+struct Range {
+    double from = 0, to = 1;
+};
+
+/// One pair of axes. Labels say the unit.
+struct Panel {
+    std::string title, x_label, y_label;
+    std::vector<Series> series;
+    std::optional<Range> x_range = {}, y_range = {};  ///< default: what the series need
+};
+
+/// Draws panels side by side, on a white ground, as SVG or PNG by the extension of `path`.
+///
+/// units    width and height in pixels
+/// throws   Error for no panel, a series of x and y of different lengths, or another extension; std::runtime_error if
+///          gnuplot is missing or fails, or the file cannot be written. It appears whole or not at all
+void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height);
+
+/// Throws Error unless draw() knows the extension of `path`.
+void check_plot_format(const std::string& path);
+
+}  // namespace bandlimit::app
