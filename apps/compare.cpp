@@ -56,7 +56,7 @@ public:
 private:
     void decode(const AnyConstView& stored, int row, Measure measure, const Encoding& encoding, bool is_data,
                 View<float> values) const {
-        const std::span<float> out(&values(0, row), static_cast<std::size_t>(values.width * values.channels));
+        const std::span<float> out(&values(0, row), static_cast<std::size_t>(values.width) * static_cast<std::size_t>(values.channels));
         if (measure == Measure::linear) return decode_row(stored, row, encoding, false, out);
         decode_row(stored, row, Encoding{}, false, out);  // as stored
         if (is_data || is_integer(info().depth) || encoding.transfer != Transfer::linear) return;
@@ -184,19 +184,13 @@ void check_same_shape(const Options& o, const ImageInfo& a, const ImageInfo& b) 
 ordered_json decibels(double psnr) { return std::isinf(psnr) ? ordered_json("inf") : ordered_json(psnr); }
 ordered_json or_null(const std::optional<double>& v) { return v ? ordered_json(*v) : ordered_json(); }
 
-double psnr_of(double mse) {
-    Metrics m;
-    m.mse = mse;
-    return m.psnr();
-}
-
 ordered_json report(const Options& o, const ImageInfo& info, Measure as, const Result& r) {
     ordered_json channels = ordered_json::array();
     for (std::size_t c = 0; c < r.metrics.per_channel.size(); ++c) {
         const Measures& m = r.metrics.per_channel[c];
         channels.push_back({{"channel", info.channel_names[c]},
                             {"mse", m.mse},
-                            {"psnr", decibels(psnr_of(m.mse))},
+                            {"psnr", decibels(m.psnr())},
                             {"max_abs", m.max_abs},
                             {"ssim", m.ssim}});
     }
@@ -228,10 +222,11 @@ void print(const Options& o, const ImageInfo& info, Measure as, const Result& r)
     fmt::print("A  {}\nB  {}\n", o.a, o.b);
     fmt::print("{} x {}, {} channel{}, {} values, white is 1", info.width, info.height, info.channels(),
                info.channels() == 1 ? "" : "s", as == Measure::encoded ? "encoded" : "linear");
-    fmt::print(o.border > 0 ? ", without a border of {}\n\n" : "\n\n", o.border);
+    if (o.border > 0) fmt::print(", without a border of {}", o.border);
+    fmt::print("\n\n");
     fmt::print("{:<10}{:>12}{:>10}{:>12}{:>10}\n", "", "MSE", "PSNR/dB", "max |A-B|", "SSIM");
     const auto line = [](const std::string& name, const Measures& m) {
-        fmt::print("{:<10}{:>12.5g}{:>10}{:>12.6f}{:>10.6f}\n", name, m.mse, psnr_text(psnr_of(m.mse)), m.max_abs, m.ssim);
+        fmt::print("{:<10}{:>12.5g}{:>10}{:>12.6f}{:>10.6f}\n", name, m.mse, psnr_text(m.psnr()), m.max_abs, m.ssim);
     };
     line("all", r.metrics);
     for (std::size_t c = 0; info.channels() > 1 && c < r.metrics.per_channel.size(); ++c)

@@ -110,10 +110,12 @@ Seconds draw(const Options& o, const Signal& signal, const Sampling& sampling, c
     return seconds;
 }
 
-Signal signal_of(const Options& o, Size size) {
+Signal signal_of(const Options& o, Size size, const Sampling& sampling) {
     require_memory(o.bytes(size), fmt::format("{} of {} x {} pixels", o.kind, size.width, size.height));
     try {
-        return with_range(o.make_signal(size), o.low, o.high);
+        Signal signal = with_range(o.make_signal(size), o.low, o.high);
+        check_sampling(signal, sampling);
+        return signal;
     } catch (const Error& e) {
         throw UsageError(e.what());  // it is made of nothing but the command line
     }
@@ -124,7 +126,7 @@ void run(const Options& o) {
     check_output_path(o.out);
     const Sampling sampling = sampling_of(o);
     const ImageTarget target = target_of(o, size);
-    const Seconds seconds = draw(o, signal_of(o, size), sampling, target);
+    const Seconds seconds = draw(o, signal_of(o, size, sampling), sampling, target);
     if (!o.json) return;
     print_json({{"kind", o.kind},
                 {"file", o.out},
@@ -172,7 +174,8 @@ private:
         const auto parse = [=](const std::string& s) {
             const std::vector<double> values = parse_numbers(name, s);
             if (values.size() != count)
-                throw UsageError(fmt::format("{}: \"{}\" holds {} numbers; write {}", name, s, values.size(), type));
+                throw UsageError(
+                    fmt::format("{}: \"{}\" is no {}; write {} numbers with commas", name, s, type, count));
             set(values);
         };
         kind_->add_option_function<std::string>(name, parse, help)->type_name(type);
@@ -356,9 +359,19 @@ void add_shapes(Program& program, CLI::App* verb) {
 void add_pattern(Program& program) {
     CLI::App* verb = program.add_verb("pattern", "Draw a test signal whose right answer is known",
                                       "bandlimit pattern zoneplate zoneplate.png --size 512x512 --antialias exact");
-    verb->require_subcommand(1);
     add_waves(program, verb);
     add_shapes(program, verb);
+    // In place of the words of the parser, a message that lists the kinds.
+    verb->require_subcommand(0, 1);
+    verb->allow_extras();
+    verb->callback([verb] {
+        if (!verb->get_subcommands().empty()) return;
+        std::string kinds;
+        for (const CLI::App* kind : verb->get_subcommands({})) kinds += (kinds.empty() ? "" : ", ") + kind->get_name();
+        const std::vector<std::string> words = verb->remaining();
+        throw UsageError(fmt::format("pattern: {} of signal; choose one of: {}",
+                                     words.empty() ? "no kind" : "\"" + words.front() + "\" is no kind", kinds));
+    });
 }
 
 }  // namespace bandlimit::app

@@ -5,11 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -69,6 +71,19 @@ std::string clauses(const Series& series, std::size_t index) {
     return {};
 }
 
+/// Names that fit side by side above a panel.
+constexpr int pixels_per_label = 150;
+
+/// Rows that the legend of the fullest panel takes; all panels leave room for as many, so that their axes align.
+int legend_rows(const std::vector<Panel>& panels, int columns) {
+    std::ptrdiff_t rows = 0;
+    for (const Panel& panel : panels) {
+        const auto labels = std::count_if(panel.series.begin(), panel.series.end(), [](const Series& s) { return !s.label.empty(); });
+        rows = std::max(rows, (labels + columns - 1) / columns);
+    }
+    return static_cast<int>(rows);
+}
+
 std::string panel_commands(const Panel& panel) {
     std::string text = "set title " + quoted(panel.title) + "\nset xlabel " + quoted(panel.x_label) + "\nset ylabel " +
                        quoted(panel.y_label) + "\n" + range("x", panel.x_range) + range("y", panel.y_range);
@@ -79,7 +94,7 @@ std::string panel_commands(const Panel& panel) {
         plot += (i ? ", " : "plot ") + clauses(panel.series[i], i);
         has_legend = has_legend || !panel.series[i].label.empty();
     }
-    text += has_legend ? "set key below center horizontal samplen 1.5 spacing 1.1\n" : "unset key\n";
+    text += has_legend ? "set key on\n" : "unset key\n";
     return text + plot + "\n";
 }
 
@@ -91,6 +106,10 @@ std::string script(const std::vector<Panel>& panels, const std::string& path, in
         "set tics nomirror out scale 0.5 textcolor rgb \"#333333\"\n"
         "set grid lc rgb \"#dddddd\" lt 1 lw 0.6\n"
         "set xzeroaxis lt 1 lw 0.8 lc rgb \"#999999\"\n";
+    const int columns = std::max(1, width / static_cast<int>(panels.size()) / pixels_per_label);
+    text += fmt::format("set key above center horizontal samplen 1.5 spacing 1.1 maxcols {}\n", columns);
+    text += fmt::format("set lmargin 8\nset rmargin 2\nset bmargin 4\nset tmargin {}\n",
+                        2.5 + 1.4 * legend_rows(panels, columns));
     text += fmt::format("set multiplot layout 1,{}\n", panels.size());
     for (const Panel& panel : panels) text += panel_commands(panel);
     return text + "unset multiplot\n";
@@ -171,6 +190,8 @@ void run_gnuplot(const std::string& commands, const std::string& path, AtomicFil
 }  // namespace
 
 void check_plot_format(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) check_output_path(path);
     if (!is_svg(path) && !path.ends_with(".png")) fail("plot \"", path, "\": end the name in .svg or .png");
 }
 
@@ -183,7 +204,6 @@ void draw(const std::vector<Panel>& panels, const std::string& path, int width, 
                 fail("draw: series \"", series.label, "\" has ", series.x.size(), " x and ", series.y.size(),
                      " y; pass as many of both, and some");
     }
-    check_output_path(path);
     check_plot_format(path);
     AtomicFile out(path);
     run_gnuplot(script(panels, path, width, height), path, out);

@@ -37,7 +37,8 @@ struct Panel {
 ///          gnuplot is missing or fails, or the file cannot be written. It appears whole or not at all
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height);
 
-/// Throws Error unless draw() knows the extension of `path`.
+/// Throws Error unless draw() knows the extension of `path`; before that, std::runtime_error for something that exists
+/// there and is no regular file.
 void check_plot_format(const std::string& path);
 
 }  // namespace bandlimit::app

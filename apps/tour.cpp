@@ -39,6 +39,9 @@ void run(const Options& options) {
                    "computed by bandlimit; below each stands the command that makes it, to be run in this directory.")};
     for (const EmbeddedFile& photo : embedded_photographs())
         write_file(tour.path(photo.name), {reinterpret_cast<const char*>(photo.bytes), photo.size});
+    tour.page.figure("overview.png",
+                     "A zone plate halved by a box, which leaves false rings; by the wrong radial Lanczos, which sharpens and lets aliases through; "
+                     "and by Lanczos-3 along each axis.", "", 784);
     using Part = void (*)(Tour&);
     const Part parts[] = {tour_lanczos, tour_grids, tour_splines, tour_images};
     Progress progress("tour", std::size(parts));

@@ -107,7 +107,7 @@ void shifts(Tour& tour) {
                           {"[1 2 1] down, copies and midpoints up", "trip-odd-odd.png", tent(), halved_on_samples, doubled_on_samples}};
     std::vector<std::vector<std::string>> rows{{"down and up again", "shift x", "shift y"}};
     std::vector<Page::Tile> tiles;
-    constexpr int left = 150, top = 180, size = 128;
+    constexpr int left = 190, top = 200, size = 64;
     const auto show = [&](const std::string& file, View<const float> image, const std::string& name) {
         write_picture(tour.path(file), cropped(image, left, top, size, size));
         tiles.push_back({file, name});
@@ -127,7 +127,7 @@ void shifts(Tour& tour) {
     tour.page.table(rows, "Shift against the original, by phase correlation; below 0 is to the left and up.",
                     "bandlimit resize gravel.png half.png --scale 0.5 --kernel box\nbandlimit resize half.png back.png --scale 2 --kernel tent\n"
                     "bandlimit compare gravel.png back.png");
-    tour.page.gallery(tiles, "The same 128 x 128 pixels each time, three times enlarged: follow the bright stone near the left edge.", "", 340);
+    tour.page.gallery(tiles, "The same 64 x 64 pixels each time, enlarged: compare where stones meet the frame, and how sharp neighbouring columns are.", "", 320);
 }
 
 void centers(Tour& tour) {

@@ -48,6 +48,29 @@ bool should_be_flat(int x, int y) {
     return reach > 0.625 && std::min(std::min(x, y), std::min(half - 1 - x, half - 1 - y)) >= border;
 }
 
+/// Pictures of equal size side by side, on white.
+Image<float> side_by_side(const std::vector<Image<float>>& images) {
+    constexpr int gap = 8;
+    const int count = static_cast<int>(images.size()), width = images.front().width(), height = images.front().height();
+    Image<float> strip(count * (width + gap) - gap, height);
+    const View<float> all = strip.view();
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < all.width; ++x) {
+            const int column = x % (width + gap);
+            all(x, y) = column < width ? images[static_cast<std::size_t>(x / (width + gap))].view()(column, y) : 1;
+        }
+    return strip;
+}
+
+/// The picture that stands for all: what goes wrong, and what is right.
+void overview(const Tour& tour) {
+    const Image<float> source = render(with_range(zone_plate({size, size}), 0.05, 0.95), size, size, Sampling::point(), tour.parallel);
+    std::vector<Image<float>> halves;
+    for (const Kernel& kernel : {box(), radial_lanczos(3), lanczos(3)})
+        halves.push_back(resample(source.view(), half, half, {.reconstruction = kernel, .edge = Edge::reflect}, tour.parallel));
+    write_picture(tour.path("overview.png"), side_by_side(halves).view());
+}
+
 void zone_plate_part(Tour& tour) {
     tour.page.section("A zone plate, halved",
                       "The frequency grows with the distance from the centre and reaches the Nyquist frequency of the source at the border, so the outer half "
@@ -130,6 +153,7 @@ void photograph_part(Tour& tour) {
 }  // namespace
 
 void tour_images(Tour& tour) {
+    overview(tour);
     zone_plate_part(tour);
     star_part(tour);
     photograph_part(tour);

@@ -30,7 +30,7 @@ void no_op(Tour& tour) {
                       "of the 3 x 3 neighbourhood lie at the distance sqrt(2), in the negative lobe, and the picture is sharpened.",
                       lanczos_2d);
     const Kernel kernel = lanczos(2);
-    Panel panel{.title = "lanczos2", .x_label = "samples from the centre", .y_label = "weight", .series = {}};
+    Panel panel{.title = "", .x_label = "samples from the centre", .y_label = "weight", .series = {}};
     panel.series = {curve("lanczos2", -2.5, 2.5, 401, kernel.value), samples_of(kernel, 2)};
     tour.page.figure(tour.plot("lanczos-no-op.svg", {panel}, 720, 300),
                      "Centred on a sample, Lanczos-2 reads 1 there and 0 everywhere else.",
@@ -80,7 +80,8 @@ void profiles(Tour& tour) {
                       "the Nyquist frequency, and windowing it into a radial Lanczos keeps the rise. Windowing the jinc gives a low-pass. The form "
                       "printed most often jumps at its radius; scaled to the zeros of the jinc it ends in zero.",
                       lanczos_2d);
-    const Kernel sinc16 = cut_off("radial sinc, cut at 16", 16, sinc), jinc16 = cut_off("jinc, cut at 16", 16, jinc);
+    // Cut where the integral over the disc is that of the whole plane, or its share at 0 would be far off.
+    const Kernel sinc16 = cut_off("radial sinc, cut at 16.5", 16.5, sinc), jinc16 = cut_off("jinc, cut at 15.75", 15.75, jinc);
     tour.page.figure(tour.plot("profiles.svg",
                                {profile_panel("ideal forms, cut off", {sinc16, jinc16}),
                                 profile_panel("wrong: 1D Lanczos of the distance", {radial_lanczos(2), radial_lanczos(3)}),

@@ -77,7 +77,7 @@ Image<float> windowed(const Bank& along_x, const Bank& along_y, View<const float
 
 }  // namespace
 
-double Metrics::psnr() const {
+double Measures::psnr() const {
     return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse);
 }
 

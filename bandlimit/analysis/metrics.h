@@ -17,12 +17,12 @@ struct Measures {
     double mse = 0;      ///< mean of (a - b)^2
     double max_abs = 0;  ///< largest |a - b|
     double ssim = 1;     ///< mean structural similarity, at most 1
-};
-struct Metrics : Measures {
-    std::vector<Measures> per_channel;
 
     /// Peak signal to noise ratio in dB, -10 log10(mse); infinite for identical images.
     double psnr() const;
+};
+struct Metrics : Measures {
+    std::vector<Measures> per_channel;
 };
 
 /// Mean squared and largest error of two images that arrive in blocks of rows.

@@ -12,6 +12,7 @@
 #include <vector>
 #else
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -52,7 +53,8 @@ void run(std::ptrdiff_t count, std::ptrdiff_t grain, int threads, const Body& bo
 #else
 void run(std::ptrdiff_t count, std::ptrdiff_t grain, int threads, const Body& body) {
     namespace tbb = oneapi::tbb;
-    tbb::task_arena arena(threads);
+    // More than there are cores would not be faster, and makes oneTBB print a warning.
+    tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));
     arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::ptrdiff_t>(0, (count + grain - 1) / grain), [&](const auto& range) {
             body(range.begin() * grain, std::min(range.end() * grain, count));

@@ -115,6 +115,7 @@ std::vector<std::uint8_t> profile(const std::string& space, const std::string& d
     std::string text(128, '\0');
     text[3] = static_cast<char>(128 + 4 + description.size());
     text.replace(8, 1, "\x02").replace(12, 8, "mntr" + space).replace(20, 4, "XYZ ").replace(36, 4, "acsp");
+    text.replace(68, 12, std::string("\0\0\xf6\xd6\0\1\0\0\0\0\xd3\x2d", 12));  // D50, which libpng insists on
     text += std::string(4, '\0') + description;
     return {text.begin(), text.end()};
 }
@@ -197,7 +198,7 @@ TEST(Formats, ExrChannelNamesAreKept) {
         const auto at = static_cast<int>(found - names.begin());
         const auto a = channels_of(std::get<View<Half>>(view_of(image)), c);
         const auto b = channels_of(std::get<View<Half>>(view_of(again)), at);
-        EXPECT_TRUE(equal(bandlimit::as_const(AnyView(a)), bandlimit::as_const(AnyView(b))));
+        EXPECT_TRUE(equal(const_view(AnyView(a)), const_view(AnyView(b))));
     }
 }
 
@@ -210,7 +211,7 @@ TEST(Formats, TheSamePixelsMakeTheSameBytes) {
         write_image(a, target_of(depth, 30, 20, 3), pixels(image));
         ::usleep(extension == "tif" || extension == "exr" ? 1100000 : 0);  // clocks in files tick in seconds
         write_image(b, target_of(depth, 30, 20, 3), pixels(image));
-        EXPECT_EQ(bytes_of(a), bytes_of(b)) << extension;
+        EXPECT_TRUE(bytes_of(a) == bytes_of(b)) << extension;
     }
 }
 

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "bandlimit/io/file_error.h"
 #include "bandlimit/io/oiio.h"
 #include "bandlimit/io/orientation.h"
+#include "bandlimit/io/pnm.h"
 #include "bandlimit/io/probe.h"
 
 namespace bandlimit {
@@ -75,7 +77,8 @@ struct ImageReader::State {
     int threads;
     Probe found;
     OIIO::ImageInput::unique_ptr input;
-    OIIO::ImageSpec spec;  ///< the stored picture
+    OIIO::ImageSpec spec;            ///< the stored picture
+    std::optional<PnmLayout> pnm16;  ///< where we read the pixels ourselves
     ImageInfo info;
     Metadata metadata;
 
@@ -110,6 +113,7 @@ ImageReader::State::State(const std::string& path_to_read, int threads_to_use)
     check_spec();
     info = info_of(spec, found.format);
     check_sizes();
+    if (found.format == "pnm" && info.depth == Depth::u16) pnm16 = find_pnm_of_16_bits(path);
     count_parts();
     metadata = {spec.extra_attribs, info.transfer};
 }
@@ -181,6 +185,12 @@ void ImageReader::State::start_over() {
 
 template <class T>
 void ImageReader::State::read_scanlines(int y, const View<T>& to) {
+    if constexpr (std::is_same_v<T, std::uint16_t>)
+        if (pnm16) {
+            if (!read_pnm_rows(path, *pnm16, y, to))
+                fail_file(path, "rows ", y, " to ", y + to.height - 1, " are missing; the file is cut short");
+            return;
+        }
     if (y < next_row_) start_over();
     const auto pixel_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * to.channels;
     const auto row_bytes = to.height > 1 ? static_cast<OIIO::stride_t>(sizeof(T)) * to.dy : pixel_bytes * to.width;

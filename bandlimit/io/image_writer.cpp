@@ -78,7 +78,11 @@ OIIO::ImageSpec spec_of(const ImageTarget& target, const FormatAbilities& format
     if (target.metadata != nullptr) take_over(*target.metadata, target, spec);
     spec.attribute("Orientation", 1);
     if (!format.associated) spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (!target.is_data) spec.attribute("oiio:ColorSpace", target.transfer == Transfer::srgb ? "sRGB" : "Linear");
+    // TIFF can say sRGB, by Exif, but not linear: OpenImageIO would then fail on an empty Exif directory.
+    const bool is_srgb = target.transfer == Transfer::srgb;
+    if (!target.is_data && (is_srgb || format.name != "tiff")) spec.attribute("oiio:ColorSpace", is_srgb ? "sRGB" : "Linear");
+    // Else TIFF and EXR get the time of day, and the same pixels would never make the same file twice.
+    if (spec.find_attribute("DateTime") == nullptr) spec.attribute("DateTime", "");
     if (format.name == "jpeg") {
         spec.attribute("Compression", "jpeg:95");
         spec.attribute("jpeg:subsampling", "4:4:4");

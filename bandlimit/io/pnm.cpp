@@ -1,6 +1,10 @@
 #include "bandlimit/io/pnm.h"
 
+#include <algorithm>
 #include <bit>
+#include <cctype>
+#include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,7 +26,50 @@ void append(std::vector<unsigned char>& bytes, float v) {
 }
 void append(std::vector<unsigned char>&, Half) { fail("write_pnm_rows: depth f16; pass u8, u16 or f32"); }
 
+/// The next number of a header, behind blanks and comments; -1 if there is none.
+int read_number(std::istream& in) {
+    constexpr auto all = std::numeric_limits<std::streamsize>::max();
+    while ((in >> std::ws).peek() == '#') in.ignore(all, '\n');
+    int value = -1;
+    if (std::isdigit(in.peek()) == 0 || !(in >> value)) return -1;
+    return value;
+}
+
 }  // namespace
+
+std::optional<PnmLayout> find_pnm_of_16_bits(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    char magic = 0, kind = 0;
+    if (!in.get(magic).get(kind) || magic != 'P' || (kind != '5' && kind != '6')) return {};
+    PnmLayout layout;
+    layout.channels = kind == '5' ? 1 : 3;
+    layout.depth = Depth::u16;
+    layout.width = read_number(in);
+    layout.height = read_number(in);
+    layout.largest_code = read_number(in);
+    if (layout.width < 1 || layout.height < 1 || layout.largest_code < 256 || layout.largest_code > 65535) return {};
+    in.get();  // one blank
+    layout.start = in ? static_cast<std::int64_t>(in.tellg()) : 0;
+    return layout;
+}
+
+bool read_pnm_rows(const std::string& path, const PnmLayout& layout, int y, const View<std::uint16_t>& view) {
+    const std::size_t row_bytes = static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.channels) * 2;
+    std::vector<unsigned char> bytes(row_bytes);
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(layout.start + static_cast<std::int64_t>(row_bytes) * y);
+    const unsigned white = static_cast<unsigned>(layout.largest_code);
+    for (int i = 0; i < view.height; ++i) {
+        if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(row_bytes))) return false;
+        const unsigned char* from = bytes.data();
+        for (int x = 0; x < view.width; ++x)
+            for (int c = 0; c < view.channels; ++c, from += 2) {
+                const unsigned code = std::min(white, from[0] * 256u + from[1]);
+                view(x, i, c) = static_cast<std::uint16_t>((code * 65535u + white / 2) / white);
+            }
+    }
+    return true;
+}
 
 PnmLayout write_pnm_header(AtomicFile& file, int width, int height, int channels, Depth depth) {
     const bool is_float = depth == Depth::f32;
@@ -30,7 +77,7 @@ PnmLayout write_pnm_header(AtomicFile& file, int width, int height, int channels
         message(is_float ? (channels == 1 ? "Pf" : "PF") : (channels == 1 ? "P5" : "P6"), '\n', width, ' ', height, '\n',
                 is_float ? "-1.0" : depth == Depth::u8 ? "255" : "65535", '\n');
     file.write(header.data(), header.size());
-    return {width, height, channels, depth, static_cast<std::int64_t>(header.size())};
+    return {width, height, channels, depth, static_cast<std::int64_t>(header.size()), 65535};
 }
 
 void write_pnm_rows(AtomicFile& file, const PnmLayout& layout, int y, const AnyConstView& view) {

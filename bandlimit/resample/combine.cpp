@@ -5,7 +5,8 @@
 namespace bandlimit {
 namespace {
 
-/// Written with comparisons, not std::min, so that NaN takes the same path as in the vector form.
+/// Written with comparisons, not std::min, so that NaN takes the same path as in the vector form. What lies within the
+/// range keeps its bits, and an antiring of 1 gives the limit to the last one.
 float limited(float sum, const float* const* near, int count, std::size_t k, float antiring) {
     float low = near[0][k], high = low;
     for (int j = 1; j < count; ++j) {
@@ -14,7 +15,7 @@ float limited(float sum, const float* const* near, int count, std::size_t k, flo
         high = high < x ? x : high;
     }
     const float clamped = sum < low ? low : high < sum ? high : sum;
-    return std::fma(antiring, clamped - sum, sum);
+    return clamped == sum ? sum : std::fma(antiring, clamped, (1 - antiring) * sum);
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ HWY_INLINE V Limited(D d, V sum, const float* const* near, int count, std::size_
         high = hn::IfThenElse(hn::Lt(high, x), x, high);
     }
     const V clamped = hn::IfThenElse(hn::Lt(sum, low), low, hn::IfThenElse(hn::Lt(high, sum), high, sum));
-    return hn::MulAdd(hn::Set(d, antiring), hn::Sub(clamped, sum), sum);
+    const V mixed = hn::MulAdd(hn::Set(d, antiring), clamped, hn::Mul(hn::Set(d, 1 - antiring), sum));
+    return hn::IfThenElse(hn::Eq(clamped, sum), sum, mixed);
 }
 
 struct Row {

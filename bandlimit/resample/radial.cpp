@@ -134,7 +134,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
             const float value = static_cast<float>(static_cast<double>(sums[c]) / divisor);
             const bool limit = antiring > 0 && has_near;
             const float limited = limit ? (value < low[c] ? low[c] : high[c] < value ? high[c] : value) : value;
-            out[c] = limit ? std::fma(antiring, limited - value, value) : value;
+            out[c] = limited == value ? value : std::fma(antiring, limited, (1 - antiring) * value);
         }
     }
 }

@@ -13,14 +13,14 @@ inline void check_option(const char* function, const char* option, double value,
     if (!(value >= low && value <= high)) fail(function, ": ", option, " = ", value, "; pass ", help);
 }
 
-constexpr double largest_position = 1e9;  ///< pixels; keeps phases within some 1e-6 of a period
+constexpr double largest_position = 4e9;  ///< pixels; keeps phases within some 1e-6 of a period
 constexpr double smallest_length = 1e-2;  ///< pixels; below it a pixel would hold too many periods to add up
 
 inline void check_position(const char* function, const char* option, double value) {
-    check_option(function, option, value, -largest_position, largest_position, "a number of at most 1e9");
+    check_option(function, option, value, -largest_position, largest_position, "a number of at most 4e9");
 }
 inline void check_length(const char* function, const char* option, double value) {
-    check_option(function, option, value, smallest_length, largest_position, "0.01 to 1e9 pixels");
+    check_option(function, option, value, smallest_length, largest_position, "0.01 to 4e9 pixels");
 }
 inline void check_phase(const char* function, double phase) { check_position(function, "phase", phase); }
 inline void check_angle(const char* function, double angle) { check_position(function, "angle", angle); }

@@ -70,7 +70,7 @@ Signal thin_line(const Frame& frame, const ThinLineOptions& options) {
     check_frame("thin_line", frame);
     check_angle("thin_line", options.angle);
     check_position("thin_line", "offset", options.offset);
-    check_option("thin_line", "width", options.width, 1e-9, largest_position, "1e-9 to 1e9 pixels");
+    check_option("thin_line", "width", options.width, 1e-9, largest_position, "1e-9 to 4e9 pixels");
     const Direction direction = direction_at(options.angle);
     const double center = line_position(frame, direction, options.offset);
     const double begin = center - options.width / 2, end = center + options.width / 2;

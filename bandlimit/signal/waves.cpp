@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "bandlimit/math/bessel.h"
 #include "bandlimit/math/quadrature.h"
 #include "bandlimit/signal/check.h"
 #include "bandlimit/signal/coverage.h"
@@ -14,10 +13,15 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// cos(2 pi periods), without rounding a multiple of pi.
-double cosine(double periods) { return sin_pi(2 * periods + 0.5); }
-/// exp(2 pi i periods).
-std::complex<double> oscillation(double periods) { return {cosine(periods), sin_pi(2 * periods)}; }
+/// The part of a number of periods that matters, in [-1/2, 1/2]; exact.
+double within_period(double periods) { return periods - std::nearbyint(periods); }
+
+/// cos(2 pi periods) and exp(2 pi i periods).
+double cosine(double periods) { return std::cos(2 * pi * within_period(periods)); }
+std::complex<double> oscillation(double periods) {
+    const double angle = 2 * pi * within_period(periods);
+    return {std::cos(angle), std::sin(angle)};
+}
 
 std::complex<double> mean_of(const Wave& wave, double a, double b) {
     const Quadrature nodes = quadrature(a, b, panels_for((b - a) * std::max(wave.frequency(a), wave.frequency(b))));
@@ -63,9 +67,9 @@ Signal sinusoid(const Direction& direction, double frequency, double phase) {
                     [f](double) { return std::abs(f); }};
     };
     const auto value = [=](double x, double y) {
-        return 0.5 + 0.5 * sin_pi(2 * (direction.along(x, y) * frequency + phase));
+        return 0.5 + 0.5 * cosine(direction.along(x, y) * frequency + phase - 0.25);
     };
-    // sin(a) is the real part of exp(i (a - pi/2)).
+    // The sine is the cosine a quarter of a period later.
     return product_signal("stripes", value,
                           {0.5, wave(direction.x * frequency, phase - 0.25, 0.5), wave(direction.y * frequency, 0, 1)});
 }
@@ -104,9 +108,10 @@ Signal siemens_star(const Frame& frame, const SiemensStarOptions& options) {
                            double x, double y) {
         const double dx = x - center.x, dy = y - center.y, r = std::hypot(dx, dy);
         if (r > radius || r == 0) return 0.5;
-        const double wave = cosine(spokes * std::atan2(dy, dx) / (2 * pi) - phase);
-        if (sinusoid) return 0.5 + 0.5 * wave;
-        return wave > 0 ? 1.0 : wave < 0 ? 0.0 : 0.5;
+        const double periods = spokes * std::atan2(dy, dx) / (2 * pi) - phase;
+        if (sinusoid) return 0.5 + 0.5 * cosine(periods);
+        const double from_spoke = std::abs(within_period(periods));  // its middle is at 0, its border at 1/4
+        return from_spoke < 0.25 ? 1.0 : from_spoke > 0.25 ? 0.0 : 0.5;
     };
     return {"siemens", value, nullptr, {}};
 }

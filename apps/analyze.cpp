@@ -1,0 +1,368 @@
+// bandlimit analyze: kernels and taps, their weights and what they do to frequencies.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "apps/common.h"
+#include "apps/plot.h"
+#include "bandlimit/analysis/kernel_spectrum.h"
+#include "bandlimit/analysis/response.h"
+#include "bandlimit/io/taps_json.h"
+#include "bandlimit/kernel/kernel.h"
+#include "bandlimit/resample/bank.h"
+#include "bandlimit/resample/radial.h"
+
+namespace bandlimit::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+    std::string kernel, at, phase, frequency, rows, plot;
+    std::optional<int> from, to;
+    bool list = false, json = false;
+
+    bool is_taps_file() const { return kernel.ends_with(".json"); }
+};
+
+/// Something to analyze.
+using Subject = std::variant<Kernel, TapsFile>;
+
+struct ResponseAt {
+    double f;
+    std::complex<double> h;
+};
+
+/// Weights of one phase. Positions in source samples from sample 0.
+struct PhaseReport {
+    double phase = 0;
+    int first = 0;
+    std::optional<int> first_y;                ///< of radial kernels, whose weights have rows
+    std::vector<std::vector<double>> weights;  ///< one row, or those of a radial kernel
+    double sum = 1, variance = 0, centroid = 0;
+    std::vector<ResponseAt> responses;
+};
+
+struct RowReport {
+    int output = 0, first = 0;
+    std::vector<float> weights;
+};
+
+struct Report {
+    std::string name;
+    std::optional<double> radius;  ///< none for taps
+    bool separable = true;
+    std::vector<std::pair<double, double>> values, profile;
+    std::vector<PhaseReport> phases;
+    std::vector<RowReport> rows;
+};
+
+std::vector<double> numbers_or(const std::string& option, const std::string& text, std::vector<double> otherwise) {
+    return text.empty() ? otherwise : parse_numbers(option, text);
+}
+
+/// 0, 1/2, 1, ... and the radius.
+std::vector<double> default_positions(double radius) {
+    std::vector<double> at;
+    for (int i = 0; i * 0.5 < radius; ++i) at.push_back(i * 0.5);
+    at.push_back(radius);
+    return at;
+}
+
+std::vector<double> phases_of(const Options& o) {
+    const std::vector<double> phases = numbers_or("--phase", o.phase, {0, 0.25, 0.5, 0.75});
+    for (const double p : phases)
+        if (!(p >= 0 && p < 1)) throw UsageError(fmt::format("--phase: {} is not in [0, 1); as 0,1/6,1/3,1/2", p));
+    return phases;
+}
+
+std::vector<double> frequencies_of(const Options& o) {
+    return numbers_or("--frequency", o.frequency, {0, 0.125, 0.25, 0.375, 0.5});
+}
+
+std::vector<int> rows_of(const Options& o) {
+    std::vector<int> rows;
+    if (o.rows.empty()) {
+        for (int i = 0; o.to && i < *o.to; ++i) rows.push_back(i);
+        return rows;
+    }
+    for (const double r : parse_numbers("--rows", o.rows)) {
+        if (!(r >= 0 && r < *o.to && r == std::floor(r)))
+            throw UsageError(fmt::format("--rows: {} is no row; pass whole numbers from 0 to {}", r, *o.to - 1));
+        rows.push_back(static_cast<int>(r));
+    }
+    return rows;
+}
+
+/// What the command line alone shows to be wrong.
+void check(const Options& o) {
+    if (o.list) return;
+    if (o.kernel.empty()) throw UsageError("analyze: name a kernel (analyze --list shows them) or a taps.json");
+    if (o.from.has_value() != o.to.has_value()) throw UsageError("analyze: --from and --to belong together");
+    if (!o.rows.empty() && !o.to) throw UsageError("--rows: say which bank with --from N --to M");
+    if (!o.at.empty()) parse_numbers("--at", o.at);
+    phases_of(o), frequencies_of(o), rows_of(o);
+    if (o.is_taps_file()) {
+        if (!o.phase.empty() || !o.at.empty())
+            throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
+    } else if (is_radial(parse_kernel(o.kernel)) && o.to) {
+        throw UsageError(fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
+    }
+    if (!o.plot.empty()) check_plot_format(o.plot);
+}
+
+// ---- Measuring -------------------------------------------------------------------------------------------------------
+
+PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, const std::vector<double>& frequencies) {
+    const PlacedWeights placed(taps, phase);
+    PhaseReport report{phase, taps.first, {}, {taps.weights}, sum_before, variance(placed), centroid(placed) + phase, {}};
+    for (const double f : frequencies) report.responses.push_back({f, response(placed, f)});
+    return report;
+}
+
+PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<double>& frequencies) {
+    const RadialWeights radial = radial_weights_at(kernel, phase, 0);
+    const PlacedWeights2D placed(radial, phase, 0);
+    PhaseReport report{phase, radial.first_x, radial.first_y, {}, radial.sum, variance(placed), 0, {}};
+    for (int y = 0; y < radial.height; ++y) {
+        const auto row = radial.weights.begin() + static_cast<std::ptrdiff_t>(y) * radial.width;
+        report.weights.emplace_back(row, row + radial.width);
+        for (int x = 0; x < radial.width; ++x) report.centroid += (radial.first_x + x) * row[x];
+    }
+    for (const double f : frequencies) report.responses.push_back({f, response(placed, f, 0)});
+    return report;
+}
+
+PhaseReport phase_report(const Subject& subject, double phase, const std::vector<double>& frequencies) {
+    if (const auto* file = std::get_if<TapsFile>(&subject)) {
+        const double total = sum(*file->taps);
+        return separable_phase(*file->taps, total, output_offset(*file->taps), frequencies);
+    }
+    const Kernel& kernel = std::get<Kernel>(subject);
+    if (is_radial(kernel)) return radial_phase(kernel, phase, frequencies);
+    const PhaseWeights at = weights_at(kernel, phase);
+    return separable_phase(at.taps, at.sum, phase, frequencies);
+}
+
+Bank bank_of(const Options& o, const Subject& subject) {
+    const Axis src{*o.from, 0, double(*o.from)};
+    if (const auto* kernel = std::get_if<Kernel>(&subject))
+        return make_bank(*kernel, src, Axis{*o.to, 0, double(*o.from)}, Edge::renormalize);
+    const Taps& taps = *std::get<TapsFile>(subject).taps;
+    if (*o.to != std::max(1, *o.from / taps.factor))
+        throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}", o.kernel, taps.factor, *o.from,
+                                     *o.from / taps.factor, *o.to));
+    return make_bank(taps, *o.from, std::abs(sum(taps)) < 1e-9 ? Edge::reflect : Edge::renormalize);
+}
+
+Report analyze(const Options& o, const Subject& subject) {
+    Report report;
+    const std::vector<double> frequencies = frequencies_of(o);
+    if (const auto* kernel = std::get_if<Kernel>(&subject)) {
+        report.name = kernel->name;
+        report.radius = kernel->radius;
+        report.separable = !is_radial(*kernel);
+        for (const double x : numbers_or("--at", o.at, default_positions(kernel->radius)))
+            report.values.emplace_back(x, kernel->value(x));
+        for (const double f : frequencies) report.profile.emplace_back(f, relative_spectrum(*kernel, f));
+        for (const double p : phases_of(o)) report.phases.push_back(phase_report(subject, p, frequencies));
+    } else {
+        report.name = o.kernel;
+        report.phases.push_back(phase_report(subject, 0, frequencies));
+    }
+    if (!o.to) return report;
+    const Bank bank = bank_of(o, subject);
+    for (const int i : rows_of(o)) {
+        const std::span<const float> row = bank.row(i);
+        report.rows.push_back({i, bank.first(i), {row.begin(), row.end()}});
+    }
+    return report;
+}
+
+// ---- Printing --------------------------------------------------------------------------------------------------------
+
+ordered_json to_json(const PhaseReport& p) {
+    ordered_json responses = ordered_json::array();
+    for (const auto& [f, h] : p.responses)
+        responses.push_back({{"f", f}, {"re", h.real()}, {"im", h.imag()}, {"gain", std::abs(h)}});
+    ordered_json out{{"phase", p.phase}, {"first", p.first}};
+    if (p.first_y) out["first_y"] = *p.first_y;
+    out["weights"] = p.first_y ? ordered_json(p.weights) : ordered_json(p.weights.front());
+    out["sum"] = p.sum;
+    out["variance"] = p.variance;
+    out["centroid"] = p.centroid;
+    out["response"] = responses;
+    return out;
+}
+
+ordered_json to_json(const Report& r) {
+    ordered_json values = ordered_json::array(), profile = values, phases = values, rows = values;
+    for (const auto& [x, value] : r.values) values.push_back({{"x", x}, {"value", value}});
+    for (const auto& [f, gain] : r.profile) profile.push_back({{"f", f}, {"gain", gain}});
+    for (const PhaseReport& p : r.phases) phases.push_back(to_json(p));
+    // A float as a double prints with all the digits that lead back to it.
+    for (const RowReport& row : r.rows)
+        rows.push_back({{"output", row.output}, {"first", row.first}, {"weights", row.weights}});
+    return {{"kernel", r.name},     {"radius", r.radius ? ordered_json(*r.radius) : ordered_json()},
+            {"separable", r.separable}, {"values", values},
+            {"phases", phases},     {"profile", profile},
+            {"rows", rows}};
+}
+
+std::string cells(const std::vector<double>& numbers) {
+    std::string text;
+    for (const double v : numbers) text += fmt::format("{:>11}", fmt::format("{:.6f}", std::abs(v) < 5e-7 ? 0.0 : v));
+    return text;
+}
+
+void print_phase(const PhaseReport& p) {
+    fmt::print("\nphase {:.6g}: first {}", p.phase, p.first);
+    if (p.first_y) fmt::print(", first row {}", *p.first_y);
+    fmt::print(", sum {:.6f}, variance {:.6f}, centroid {:.6f}\n", p.sum, p.variance, p.centroid);
+    for (const std::vector<double>& row : p.weights) fmt::print("  {}\n", cells(row));
+}
+
+void print_gains(const Report& r) {
+    std::vector<double> line;
+    for (const ResponseAt& at : r.phases.front().responses) line.push_back(at.f);
+    fmt::print("\n{:<14}{}\n", "gain at f", cells(line));
+    for (const PhaseReport& p : r.phases) {
+        line.clear();
+        for (const ResponseAt& at : p.responses) line.push_back(std::abs(at.h));
+        fmt::print("{:<14}{}\n", fmt::format("phase {:.4g}", p.phase), cells(line));
+    }
+    if (r.profile.empty()) return;
+    line.clear();
+    for (const auto& [f, gain] : r.profile) line.push_back(gain);
+    fmt::print("{:<14}{}\n", "continuous", cells(line));
+}
+
+void print(const Report& r) {
+    fmt::print("{}", r.name);
+    if (r.radius) fmt::print(": {}, radius {:.6g}", r.separable ? "separable" : "radial", *r.radius);
+    fmt::print("\n");
+    if (!r.values.empty()) fmt::print("\n{:>10}{:>12}\n", "x", "value");
+    for (const auto& [x, value] : r.values) fmt::print("{:>10.4f}{:>12.6f}\n", x, value);
+    for (const PhaseReport& p : r.phases) print_phase(p);
+    print_gains(r);
+    if (!r.rows.empty()) fmt::print("\n{:>8}{:>8}  weights\n", "output", "first");
+    for (const RowReport& row : r.rows) fmt::print("{:>8}{:>8}  {}\n", row.output, row.first, fmt::join(row.weights, " "));
+}
+
+void print_list(bool json) {
+    if (json) {
+        ordered_json list = ordered_json::array();
+        for (const KernelInfo& k : kernel_list())
+            list.push_back({{"name", k.name}, {"example", k.example}, {"summary", k.summary}});
+        return print_json({{"kernels", list}});
+    }
+    for (const KernelInfo& k : kernel_list()) fmt::print("{:<24}{}\n", k.name, k.summary);
+}
+
+// ---- Drawing ---------------------------------------------------------------------------------------------------------
+
+template <class F>
+Series curve(const std::string& label, double from, double to, int steps, F f) {
+    Series series{label, {}, {}, Series::Style::line};
+    for (int i = 0; i <= steps; ++i) {
+        const double x = from + (to - from) * i / steps;
+        series.x.push_back(x);
+        series.y.push_back(f(x));
+    }
+    return series;
+}
+
+Panel shape_panel(const Subject& subject) {
+    Panel panel{"", "distance from the output (source samples)", "weight", {}};
+    if (const auto* kernel = std::get_if<Kernel>(&subject)) {
+        panel.title = kernel->name;
+        const double reach = kernel->radius * 1.1;
+        panel.series = {curve("", -reach, reach, 800, kernel->value)};
+        return panel;
+    }
+    const PlacedWeights placed(*std::get<TapsFile>(subject).taps);
+    panel.title = "taps";
+    Series stems{"", {}, placed.weights, Series::Style::stems};
+    for (std::size_t j = 0; j < placed.weights.size(); ++j) stems.x.push_back(placed.first + static_cast<double>(j));
+    panel.series = {stems};
+    return panel;
+}
+
+Panel response_panel(const Report& r, const Subject& subject) {
+    constexpr int steps = 200;
+    std::vector<double> frequencies;
+    for (int i = 0; i <= steps; ++i) frequencies.push_back(0.5 * i / steps);
+    Panel panel{"response", "frequency (cycles per source sample)", "gain", {}};
+    for (const PhaseReport& p : r.phases) {
+        Series series{r.phases.size() > 1 ? fmt::format("phase {:.3g}", p.phase) : "", {}, {}, Series::Style::line};
+        for (const auto& [f, h] : phase_report(subject, p.phase, frequencies).responses) {
+            series.x.push_back(f);
+            series.y.push_back(std::abs(h));
+        }
+        panel.series.push_back(std::move(series));
+    }
+    return panel;
+}
+
+void plot(const Options& o, const Report& r, const Subject& subject) {
+    std::vector<Panel> panels{shape_panel(subject), response_panel(r, subject)};
+    if (std::holds_alternative<Kernel>(subject)) {
+        Panel panel{"variance of white noise", "phase (source samples)", "sum of squared weights", {}};
+        panel.series = {curve("", 0, 0.999, 120, [&](double p) { return phase_report(subject, p, {}).variance; })};
+        panel.x_range = Range{0, 1};
+        panels.push_back(std::move(panel));
+    }
+    draw(panels, o.plot, 400 * static_cast<int>(panels.size()), 360);
+}
+
+void run(const Options& o) {
+    if (o.list) return print_list(o.json);
+    if (!o.plot.empty()) check_output_path(o.plot);
+    Subject subject;
+    if (o.is_taps_file()) {
+        TapsFile file = read_taps(o.kernel);
+        taps_of(file, o.kernel);
+        subject = std::move(file);
+    } else {
+        subject = parse_kernel(o.kernel);
+    }
+    const Report report = analyze(o, subject);
+    if (!o.plot.empty()) plot(o, report, subject);
+    if (o.json) print_json(to_json(report));
+    else print(report);
+}
+
+}  // namespace
+
+void add_analyze(Program& program) {
+    auto o = std::make_shared<Options>();
+    CLI::App* verb = program.add_verb("analyze", "See what a kernel or taps do: weights, responses, variance, spectrum",
+                                      "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --plot bspline.svg");
+    verb->add_option("KERNEL", o->kernel, "A kernel (analyze --list shows them), or a file that ends in .json");
+    verb->add_flag("--list", o->list, "List the kernels with a line each");
+    verb->add_option("--at", o->at, "Positions to print the kernel's value at, between commas; default 0,0.5,... radius")
+        ->type_name("X,...");
+    verb->add_option("--phase", o->phase,
+                     "Where the output lies, right of source sample 0, in [0, 1); default 0,1/4,1/2,3/4. Weights are\n"
+                     "normalised to sum 1; \"first\" and \"centroid\" count from source sample 0. Of a radial kernel the\n"
+                     "output lies on the row of sample 0, and weights have rows")
+        ->type_name("P,...");
+    verb->add_option("--frequency", o->frequency,
+                     "Frequencies of responses, in cycles per source sample; default 0,1/8,1/4,3/8,1/2. Responses are\n"
+                     "relative to the output's position; those of radial kernels along x")
+        ->type_name("F,...");
+    verb->add_option("--from", o->from, "Print rows of the bank that takes N samples ...")
+        ->check(CLI::Range(1, 1 << 24))
+        ->type_name("N");
+    verb->add_option("--to", o->to, "... to M, with renormalized edges")->check(CLI::Range(1, 1 << 24))->type_name("M");
+    verb->add_option("--rows", o->rows, "Which outputs; default all")->type_name("I,...");
+    verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
+        ->type_name("OUT");
+    add_json(verb, o->json);
+    program.on(verb, [o] { check(*o); }, [o] { run(*o); });
+}
+
+}  // namespace bandlimit::app
