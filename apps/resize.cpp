@@ -177,7 +177,9 @@ nlohmann::ordered_json report_of(const Options& o, const ImageInfo& in, const Im
 
 void run(const Options& o) {
     check_output_path(o.out);
-    ImageReader reader(o.in, o.parallel.threads);
+    Stopwatch watch;
+    StreamReport stream;
+    ImageReader reader = watch.time(stream.read, [&] { return ImageReader(o.in, o.parallel.threads); });
     const ImageInfo& in = reader.info();
     const Rectangle region = source_region(o, in);
     const Size size = target_size(o, region);
@@ -191,11 +193,10 @@ void run(const Options& o) {
         note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", o.in));
 
     ImageWriter writer(o.out, out.target, o.parallel.threads);
-    StreamReport stream;
     Encoding from = in.encoding(o.space), to = writer.encoding();
     if (o.space == Space::data && !options.premultiply) from.alpha = to.alpha = -1;  // a channel like the others
     stream_resize(resizer, reader, from, writer, to, out.target, out.background, o.parallel, stream);
-    writer.finish();
+    watch.time(stream.write, [&] { writer.finish(); });
     if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
     if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream));
 }

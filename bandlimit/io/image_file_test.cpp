@@ -200,7 +200,7 @@ TEST(ImageFile, TilesLevelsAndDataWindowsAreRead) {
 TEST(ImageFile, LevelsAndSubimagesAreCounted) {
     const Folder folder;
     OIIO::ImageBuf picture(OIIO::ImageSpec(32, 32, 1, OIIO::TypeDesc::FLOAT));
-    ASSERT_TRUE(OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, picture, folder / "m.exr"));
+    ASSERT_TRUE(OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, picture, folder / "m.exr", {}));
     const ImageReader mips(folder / "m.exr", 1);
     EXPECT_EQ(mips.info().levels, 6);
     EXPECT_EQ(mips.info().width, 32);

@@ -69,6 +69,18 @@ int alpha_in_file(const ImageTarget& target) {
     return -1;
 }
 
+/// What the codes are, where the format can say so and no profile says it better: PNG holds one or the other.
+void note_space(const ImageTarget& target, const FormatAbilities& format, OIIO::ImageSpec& spec) {
+    const bool is_srgb = target.transfer == Transfer::srgb;
+    const bool has_profile = spec.find_attribute("ICCProfile") != nullptr;
+    const bool is_noted = !target.is_data && !has_profile;
+    // TIFF says sRGB by Exif, and has no word for linear but Exif's "uncalibrated". It needs one of them: OpenImageIO
+    // fails on an Exif directory that is empty.
+    constexpr int uncalibrated = 0xffff;
+    if (is_noted && (is_srgb || format.name != "tiff")) spec.attribute("oiio:ColorSpace", is_srgb ? "sRGB" : "Linear");
+    else if (format.name == "tiff") spec.attribute("Exif:ColorSpace", uncalibrated);
+}
+
 OIIO::ImageSpec spec_of(const ImageTarget& target, const FormatAbilities& format) {
     OIIO::ImageSpec spec(target.width, target.height, static_cast<int>(target.channel_names.size()),
                          type_of(target.depth));
@@ -78,9 +90,7 @@ OIIO::ImageSpec spec_of(const ImageTarget& target, const FormatAbilities& format
     if (target.metadata != nullptr) take_over(*target.metadata, target, spec);
     spec.attribute("Orientation", 1);
     if (!format.associated) spec.attribute("oiio:UnassociatedAlpha", 1);
-    // TIFF can say sRGB, by Exif, but not linear: OpenImageIO would then fail on an empty Exif directory.
-    const bool is_srgb = target.transfer == Transfer::srgb;
-    if (!target.is_data && (is_srgb || format.name != "tiff")) spec.attribute("oiio:ColorSpace", is_srgb ? "sRGB" : "Linear");
+    note_space(target, format, spec);
     // Else TIFF and EXR get the time of day, and the same pixels would never make the same file twice.
     if (spec.find_attribute("DateTime") == nullptr) spec.attribute("DateTime", "");
     if (format.name == "jpeg") {

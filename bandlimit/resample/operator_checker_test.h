@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -162,9 +163,10 @@ public:
         if (auto p = distance_problem()) return p;
         for (const int threads : {1, 2, 3, 7})
             if (auto p = problem_of(memories[0], memories[0], whole, threads)) return p;
-        for (const Memory& from : memories)
-            for (const Memory& to : memories)
-                if (auto p = problem_of(from, to, whole, 3)) return p;
+        constexpr std::size_t count = std::size(memories);
+        for (std::size_t from = 0; from < count; ++from)
+            for (const std::size_t step : {0, 3, 7})
+                if (auto p = problem_of(memories[from], memories[(from + step) % count], whole, 3)) return p;
         for (const Window& window : windows())
             for (const Memory& to : {memories[0], memories[1], memories[7]})
                 if (auto p = problem_of(memories[1], to, window, 2)) return p;

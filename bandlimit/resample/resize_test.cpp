@@ -1,0 +1,279 @@
+#include "bandlimit/resample/resize.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "bandlimit/core/error.h"
+#include "bandlimit/math/random.h"
+#include "bandlimit/resample/combine.h"
+#include "bandlimit/resample/naive_test.h"
+#include "bandlimit/resample/operator_checker_test.h"
+
+namespace bandlimit {
+namespace {
+
+constexpr double largest = 2;  ///< no sample of these tests is larger
+
+/// A scale and a kernel per axis.
+struct Resizing {
+    Kernel kernel;
+    Edge edge;
+    int x_numerator, x_denominator, y_numerator, y_denominator;
+
+    Size output(Size s) const {
+        return {std::max(1, s.width * x_numerator / x_denominator), std::max(1, s.height * y_numerator / y_denominator)};
+    }
+    Grid src(Size s) const { return {{s.width, 0, double(s.width)}, {s.height, 0, double(s.height)}}; }
+    Grid dst(Size s) const {
+        const Size out = output(s);
+        return {{out.width, 0, double(s.width)}, {out.height, 0, double(s.height)}};
+    }
+};
+
+std::vector<Resizing> resizings() {
+    return {{lanczos(3), Edge::reflect, 1, 2, 1, 2},
+            {mitchell(), Edge::renormalize, 3, 2, 3, 2},
+            {catmull_rom(), Edge::wrap, 2, 1, 1, 3},
+            {tent(), Edge::zero, 1, 3, 2, 1},
+            {box(), Edge::clamp, 2, 5, 1, 1}};
+}
+
+Size size_of(View<const float> v) { return {v.width, v.height}; }
+
+const std::vector<NaiveRow>& rows_of(const Kernel& kernel, int n, int m, Edge edge) {
+    static std::map<std::tuple<std::string, int, int, Edge>, std::vector<NaiveRow>> known;
+    std::vector<NaiveRow>& rows = known[{kernel.name, n, m, edge}];
+    for (int i = static_cast<int>(rows.size()); i < m; ++i)
+        rows.push_back(naive_row(kernel, Axis{n, 0, double(n)}, Axis{m, 0, double(n)}, i, edge));
+    return rows;
+}
+
+/// Runs a part of the output as a resizing of its own, from a view of floats to a view of floats.
+void run_part(const Resizing& r, View<const float> src, View<float> dst, Window w, Parallel parallel, const ResizeOptions& options) {
+    Grid grid = r.dst(size_of(src));
+    grid.x = grid.x.cells(w.x, w.x + w.width);
+    grid.y = grid.y.cells(w.y, w.y + w.height);
+    Resizer(r.src(size_of(src)), grid, src.channels, options).run({src, 0, {}}, {dst, 0, {}, {}}, parallel);
+}
+
+TEST(Resizer, PassesTheOperatorChecker) {
+    for (const Resizing& r : resizings()) {
+        Operator op;
+        op.output_size = [r](Size size) { return r.output(size); };
+        op.run = [r](View<const float> src, View<float> dst, Window w, Parallel parallel) {
+            run_part(r, src, dst, w, parallel, {.reconstruction = r.kernel, .edge = r.edge});
+        };
+        const auto row_x = [r](View<const float> src, int x) -> const NaiveRow& {
+            return rows_of(r.kernel, src.width, r.output(size_of(src)).width, r.edge)[std::size_t(x)];
+        };
+        const auto row_y = [r](View<const float> src, int y) -> const NaiveRow& {
+            return rows_of(r.kernel, src.height, r.output(size_of(src)).height, r.edge)[std::size_t(y)];
+        };
+        op.reference = [=](View<const float> src, int x, int y, int c) {
+            double sum = 0;
+            for (int v = 0; v < src.height; ++v)
+                if (const double w = row_y(src, y).weights[std::size_t(v)]; w != 0) sum += w * dot(row_x(src, x), src, v, c);
+            return sum;
+        };
+        op.bound = [=](View<const float> src, int x, int y, int) {
+            const NaiveRow &a = row_x(src, x), &b = row_y(src, y);
+            return dot_bound(a.taps + b.taps + 3, a.sum_abs * b.sum_abs * largest);
+        };
+        EXPECT_TRUE(check_operator(op)) << r.kernel.name << ' ' << name_of(r.edge);
+    }
+}
+
+TEST(Resizer, OfARadialKernelPassesTheOperatorChecker) {
+    for (const Resizing& r : {Resizing{jinc_lanczos(2), Edge::reflect, 2, 3, 2, 3}, {jinc_lanczos(2), Edge::renormalize, 2, 1, 2, 1}}) {
+        /// The weights of the disc, straight from the kernel.
+        const auto for_each_weight = [r](View<const float> src, int x, int y, auto visit) {
+            const Size size = size_of(src);
+            const Grid from = r.src(size), to = r.dst(size);
+            const double tx = from.x.index(to.x.position(x)), ty = from.y.index(to.y.position(y));
+            const double sx = std::max(1.0, to.x.pitch()), sy = std::max(1.0, to.y.pitch()), radius = r.kernel.radius;
+            for (int j = static_cast<int>(std::floor(ty - radius * sy)); j <= ty + radius * sy; ++j)
+                for (int i = static_cast<int>(std::floor(tx - radius * sx)); i <= tx + radius * sx; ++i)
+                    visit(resolve(i, size.width, r.edge), resolve(j, size.height, r.edge),
+                          r.kernel.value(std::hypot((i - tx) / sx, (j - ty) / sy)));
+        };
+        Operator op;
+        op.output_size = [r](Size size) { return r.output(size); };
+        op.run = [r](View<const float> src, View<float> dst, Window w, Parallel parallel) {
+            run_part(r, src, dst, w, parallel, {.reconstruction = r.kernel, .edge = r.edge});
+        };
+        op.reference = [=](View<const float> src, int x, int y, int c) {
+            double sum = 0, whole = 0;
+            for_each_weight(src, x, y, [&](int i, int j, double w) {
+                if (i >= 0 && j >= 0) sum += w * src(i, j, c), whole += w;
+            });
+            return sum / whole;
+        };
+        op.bound = [=](View<const float> src, int x, int y, int) {
+            double sum_abs = 0, whole = 0;
+            int taps = 0;
+            for_each_weight(src, x, y, [&](int i, int j, double w) {
+                if (i >= 0 && j >= 0) sum_abs += std::abs(w), whole += w, taps += w != 0;
+            });
+            // The table of the kernel is good to 1e-7 of its peak, for each weight and for their sum.
+            const double table = 2 * taps * 1e-7 * r.kernel.value(0) / whole * largest * sum_abs / whole;
+            return dot_bound(taps, sum_abs / whole * largest) + table;
+        };
+        EXPECT_TRUE(check_operator(op)) << r.kernel.name << ' ' << name_of(r.edge);
+    }
+}
+
+Image<float> noise(int width, int height, int channels, std::uint64_t seed) {
+    Image<float> image(width, height, channels, Layout::interleaved);
+    Random random(seed);
+    for (int i = 0; i < width * height * channels; ++i) image.view().data[i] = static_cast<float>(random.uniform(-0.1, 1.1));
+    return image;
+}
+
+template <class T>
+void expect_same(View<const T> a, View<const T> b, const std::string& what) {
+    ASSERT_TRUE(same_shape(a, b));
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+            for (int c = 0; c < a.channels; ++c) ASSERT_EQ(a(x, y, c), b(x, y, c)) << what << ' ' << x << ' ' << y << ' ' << c;
+}
+
+TEST(Resizer, BlocksOfRowsGiveTheBitsOfTheWhole) {
+    const Image<float> src = noise(19, 83, 3, 1);
+    for (const bool flipped : {false, true})
+        for (const Edge edge : all_edges())
+            for (const auto& [width, height] : {std::pair{7, 31}, {40, 200}, {40, 31}, {7, 200}}) {
+                const Grid from{{19}, {83}}, to{{width}, flipped ? Axis{height, 1, 0} : Axis{height}};
+                const Resizer resizer(from, to, 3, {.edge = edge});
+                Image<float> whole(width, height, 3), blocks(width, height, 3);
+                resizer.run({src.view(), 0, {}}, {whole.view(), 0, {}, {}});
+                for (int first = 0; first < height;) {
+                    const int last = std::min(height, first + 1 + first % 23);
+                    // Only the rows that are needed are given.
+                    const IndexRange rows = resizer.rows_needed(first, last);
+                    resizer.run({cropped(src.view(), 0, rows.begin, 19, rows.end - rows.begin), rows.begin, {}},
+                                {cropped(blocks.view(), 0, first, width, last - first), first, {}, {}}, {2});
+                    first = last;
+                }
+                expect_same<float>(blocks.view(), whole.view(), message(name_of(edge), ' ', width, ' ', height));
+            }
+}
+
+template <class T>
+Image<T> stored(const Image<float>& values, const Encoding& encoding) {
+    Image<T> image(values.width(), values.height(), values.channels(), Layout::interleaved);
+    for (int y = 0; y < values.height(); ++y) {
+        const float* row = &values.view()(0, y);
+        encode_row({row, std::size_t(values.width() * values.channels())}, false, image.view(), y, encoding);
+    }
+    return image;
+}
+
+template <class From, class To>
+void expect_codes_of_the_float_result(const Encoding& encoding) {
+    const Image<From> src = stored<From>(noise(23, 17, 4, 2), encoding);
+    const Resizer resizer({{23}, {17}}, {{11}, {30}}, 4, {.reconstruction = catmull_rom()});
+    // By way of floats: decode, resize what is linear and premultiplied, encode.
+    Image<float> linear(23, 17, 4, Layout::interleaved), result(11, 30, 4, Layout::interleaved);
+    for (int y = 0; y < 17; ++y) decode_row(View<const From>(src.view()), y, encoding, true, {&linear.view()(0, y), 23 * 4});
+    resizer.run({View<const float>(linear.view()), 0, {}}, {result.view(), 0, {}, {}});
+    Image<To> expected(11, 30, 4, Layout::interleaved), direct(11, 30, 4, Layout::interleaved);
+    for (int y = 0; y < 30; ++y) encode_row({&result.view()(0, y), 11 * 4}, true, expected.view(), y, encoding);
+    for (const int threads : {1, 3}) {
+        resizer.run({View<const From>(src.view()), 0, encoding}, {direct.view(), 0, encoding, {}}, {threads});
+        expect_same<To>(direct.view(), expected.view(), "");
+    }
+}
+
+TEST(Resizer, CodesAreThoseOfTheFloatResult) {
+    for (const Encoding& encoding : {Encoding{Transfer::srgb, 3}, {Transfer::linear, 3}, {Transfer::srgb, -1}, {Transfer::linear, 3, true}}) {
+        expect_codes_of_the_float_result<std::uint8_t, std::uint8_t>(encoding);
+        expect_codes_of_the_float_result<std::uint16_t, std::uint8_t>(encoding);
+        expect_codes_of_the_float_result<std::uint16_t, std::uint16_t>(encoding);
+        expect_codes_of_the_float_result<Half, Half>(encoding);
+        expect_codes_of_the_float_result<std::uint8_t, float>(encoding);
+    }
+}
+
+TEST(Resizer, TheSameSizeKeepsEveryCodeUnderAuto) {
+    const Encoding encoding{Transfer::srgb, 3};
+    Random random(4);
+    Image<std::uint8_t> src(20, 9, 4, Layout::interleaved), dst(20, 9, 4, Layout::interleaved);
+    for (int i = 0; i < 20 * 9 * 4; ++i) src.view().data[i] = static_cast<std::uint8_t>(random.integer(1, 255));
+    for (const bool premultiply : {false, true}) {
+        Resizer({{20}, {9}}, {{20}, {9}}, 4, {.premultiply = premultiply})
+            .run({View<const std::uint8_t>(src.view()), 0, encoding}, {dst.view(), 0, encoding, {}});
+        expect_same<std::uint8_t>(dst.view(), src.view(), "");
+    }
+}
+
+TEST(Resizer, TransparentColourDoesNotBleed) {
+    // Left half opaque grey, right half transparent red.
+    Image<float> src(8, 1, 4, Layout::interleaved), dst(4, 1, 4, Layout::interleaved);
+    for (int x = 0; x < 8; ++x) {
+        const bool opaque = x < 4;
+        for (int c = 0; c < 3; ++c) src.view()(x, 0, c) = opaque ? 0.5f : c == 0 ? 1.0f : 0.0f;
+        src.view()(x, 0, 3) = opaque;
+    }
+    const Encoding encoding{Transfer::linear, 3};
+    Resizer({{8}, {1}}, {{4}, {1}}, 4, {.reconstruction = tent()})
+        .run({View<const float>(src.view()), 0, encoding}, {dst.view(), 0, encoding, {}});
+    for (int x = 0; x < 4; ++x)
+        for (int c = 0; c < 3; ++c) {
+            if (dst.view()(x, 0, 3) > 0) EXPECT_NEAR(dst.view()(x, 0, c), 0.5, 1e-6) << x;
+            else EXPECT_EQ(dst.view()(x, 0, c), 0) << x;
+        }
+    // By hand, weights [1 3 3 1]/8: the edge lies between outputs 1 and 2.
+    EXPECT_NEAR(dst.view()(1, 0, 3), 7 / 8.0, 1e-6);
+    EXPECT_NEAR(dst.view()(2, 0, 3), 1 / 8.0, 1e-6);
+}
+
+TEST(Resizer, ReportsWhatIsNotFinite) {
+    Image<float> src(9, 9);
+    Image<std::uint8_t> dst(9, 9);
+    const Resizer resizer({{9}, {9}}, {{9}, {9}}, 1);
+    EXPECT_FALSE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}));
+    src.view()(4, 4) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_TRUE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}));
+}
+
+TEST(Resizer, AutoShrinksWithLanczosAndGrowsWithMitchell) {
+    EXPECT_EQ(Resizer({{9}, {9}}, {{9}, {10}}, 1).kernel_x(), "lanczos3");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_x(), "lanczos3");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_y(), "mitchell");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8, 1, 0}, {10, 1, 0}}, 1).kernel_x(), "lanczos3");
+}
+
+TEST(Resizer, RefusesWhatDoesNotFit) {
+    const Image<float> src(9, 7, 2);
+    Image<float> dst(4, 3, 2);
+    const Resizer resizer({{9}, {7}}, {{4}, {3}}, 2);
+    EXPECT_NO_THROW(resizer.run({src.view(), 0, {}}, {dst.view(), 0, {}, {}}));
+    EXPECT_THROW(resizer.run({src.view(), 1, {}}, {dst.view(), 0, {}, {}}), Error) << "row 0 is missing";
+    EXPECT_THROW(resizer.run({src.view(), 0, {}}, {dst.view(), 1, {}, {}}), Error) << "rows 1 to 4 of 3";
+    EXPECT_THROW(resizer.run({src.view(), 0, {}}, {Image<float>(5, 3, 2).view(), 0, {}, {}}), Error);
+    EXPECT_THROW(resizer.run({src.view(), 0, {}}, {Image<float>(4, 3, 1).view(), 0, {}, {}}), Error);
+    EXPECT_THROW(resizer.run({src.view(), 0, {}}, {dst.view(), 0, {}, {0.5f}}), Error) << "no alpha to lay over it";
+    EXPECT_THROW(resizer.rows_needed(2, 2), Error);
+    EXPECT_THROW(resizer.rows_needed(-1, 2), Error);
+    EXPECT_THROW(Resizer({{9}, {7}}, {{0}, {3}}, 2), Error);
+    EXPECT_THROW(Resizer({{9}, {7}}, {{4}, {3}}, 0), Error);
+    EXPECT_THROW(Resizer({{9}, {7}}, {{4}, {3}}, 2, {.antiring = 2}), Error);
+}
+
+TEST(Resample, IsTheResizerOnWholeImages) {
+    const Image<float> src = noise(9, 7, 2, 5);
+    Image<float> expected(20, 3, 2);
+    Resizer({{9}, {7}}, {{20}, {3}}, 2, {.reconstruction = tent()}).run({src.view(), 0, {}}, {expected.view(), 0, {}, {}});
+    for (const Layout layout : {Layout::planar, Layout::interleaved})
+        expect_same<float>(std::as_const(expected).view(), resample(src.view(), 20, 3, {.reconstruction = tent()}, {}, layout).view(), "");
+}
+
+}  // namespace
+}  // namespace bandlimit
