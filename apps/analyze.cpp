@@ -80,7 +80,12 @@ std::vector<double> phases_of(const Options& o) {
 }
 
 std::vector<double> frequencies_of(const Options& o) {
-    return numbers_or("--frequency", o.frequency, {0, 0.125, 0.25, 0.375, 0.5});
+    constexpr double limit = 1000;  // the cost of a spectrum grows with its frequency
+    const std::vector<double> frequencies = numbers_or("--frequency", o.frequency, {0, 0.125, 0.25, 0.375, 0.5});
+    for (const double f : frequencies)
+        if (!(std::abs(f) <= limit))
+            throw UsageError(fmt::format("--frequency: {} is out of range; pass cycles per source sample, at most {}", f, limit));
+    return frequencies;
 }
 
 std::vector<int> rows_of(const Options& o) {
@@ -148,9 +153,11 @@ PhaseReport phase_report(const Subject& subject, double phase, const std::vector
 }
 
 Bank bank_of(const Options& o, const Subject& subject) {
-    const Axis src{*o.from, 0, double(*o.from)};
-    if (const auto* kernel = std::get_if<Kernel>(&subject))
-        return make_bank(*kernel, src, Axis{*o.to, 0, double(*o.from)}, Edge::renormalize);
+    const Axis src{*o.from, 0, double(*o.from)}, dst{*o.to, 0, double(*o.from)};
+    if (const auto* kernel = std::get_if<Kernel>(&subject)) {
+        require_memory(bank_bytes(kernel->radius, src, dst), fmt::format("the bank from {} to {} samples", *o.from, *o.to));
+        return make_bank(*kernel, src, dst, Edge::renormalize);
+    }
     const Taps& taps = *std::get<TapsFile>(subject).taps;
     if (*o.to != std::max(1, *o.from / taps.factor))
         throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}", o.kernel, taps.factor, *o.from,

@@ -39,6 +39,20 @@ void Program::on(CLI::App* verb, std::function<void()> check, std::function<void
     });
 }
 
+void require_one_subcommand(CLI::App& app, const std::string& noun) {
+    app.require_subcommand(0, 1);
+    app.allow_extras();
+    app.callback([&app, noun] {
+        const std::vector<std::string> words = app.remaining();
+        if (words.empty() && !app.get_subcommands().empty()) return;
+        std::string names;
+        for (const CLI::App* command : app.get_subcommands({}))
+            names += (names.empty() ? "" : ", ") + command->get_name();
+        throw UsageError(fmt::format("{} {}; choose one of: {}",
+                                     words.empty() ? "there is no" : "\"" + words.front() + "\" is no", noun, names));
+    });
+}
+
 CLI::Option* add_space(CLI::App* verb, Space& space) {
     return verb->add_option_function<std::string>("--space", [&space](const std::string& s) { space = parse_space(s); },
                "What the file's codes mean: auto (8 and 16 bit: sRGB, float: linear, unless the file says\n"

@@ -32,6 +32,10 @@ struct Program {
     void on(CLI::App* verb, std::function<void()> check, std::function<void()> run);
 };
 
+/// Makes `app`, which has all its subcommands, take exactly one of them; a message that lists them, each of which is a
+/// `noun`, takes the place of the parser's own.
+void require_one_subcommand(CLI::App& app, const std::string& noun);
+
 void add_info(Program& program);
 void add_resize(Program& program);
 void add_pattern(Program& program);

@@ -69,7 +69,6 @@ int main(int argc, char** argv) {
     app::silence_codecs();
     app::Program program;
     program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
-    program.cli.require_subcommand(1);
     program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
     app::add_resize(program);
     app::add_pattern(program);
@@ -77,6 +76,7 @@ int main(int argc, char** argv) {
     app::add_analyze(program);
     app::add_info(program);
     app::add_tour(program);
+    app::require_one_subcommand(program.cli, "verb");
     if (const auto code = parse(program, argc, argv)) return *code;
     return run(program.selected);
 }

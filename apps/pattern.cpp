@@ -156,7 +156,8 @@ public:
     }
     template <class Integer>
     void integer(const std::string& name, Integer& target, const std::string& help) {
-        kind_->add_option(name, target, help)->type_name("N");
+        CLI::Option* option = kind_->add_option(name, target, help)->type_name("N");
+        if constexpr (std::is_unsigned_v<Integer>) option->check(CLI::NonNegativeNumber);  // the parser would wrap it
     }
     void flag(const std::string& name, bool& target, const std::string& help) { kind_->add_flag(name, target, help); }
     void point(const std::string& name, std::optional<Point>& target, const std::string& help) {
@@ -361,17 +362,7 @@ void add_pattern(Program& program) {
                                       "bandlimit pattern zoneplate zoneplate.png --size 512x512 --antialias exact");
     add_waves(program, verb);
     add_shapes(program, verb);
-    // In place of the words of the parser, a message that lists the kinds.
-    verb->require_subcommand(0, 1);
-    verb->allow_extras();
-    verb->callback([verb] {
-        if (!verb->get_subcommands().empty()) return;
-        std::string kinds;
-        for (const CLI::App* kind : verb->get_subcommands({})) kinds += (kinds.empty() ? "" : ", ") + kind->get_name();
-        const std::vector<std::string> words = verb->remaining();
-        throw UsageError(fmt::format("pattern: {} of signal; choose one of: {}",
-                                     words.empty() ? "no kind" : "\"" + words.front() + "\" is no kind", kinds));
-    });
+    require_one_subcommand(*verb, "kind of signal");
 }
 
 }  // namespace bandlimit::app

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -84,18 +85,33 @@ int legend_rows(const std::vector<Panel>& panels, int columns) {
     return static_cast<int>(rows);
 }
 
+std::size_t legend_lines(const Panel& panel) {
+    const auto labelled = std::count_if(panel.series.begin(), panel.series.end(),
+                                        [](const Series& series) { return !series.label.empty(); });
+    return static_cast<std::size_t>(labelled + 1) / 2;
+}
+
 std::string panel_commands(const Panel& panel) {
     std::string text = "set title " + quoted(panel.title) + "\nset xlabel " + quoted(panel.x_label) + "\nset ylabel " +
                        quoted(panel.y_label) + "\n" + range("x", panel.x_range) + range("y", panel.y_range);
     std::string plot;
-    bool has_legend = false;
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
         text += data_block(panel.series[i], i);
         plot += (i ? ", " : "plot ") + clauses(panel.series[i], i);
-        has_legend = has_legend || !panel.series[i].label.empty();
     }
-    text += has_legend ? "set key on\n" : "unset key\n";
+    text += legend_lines(panel) > 0 ? "set key on\n" : "unset key\n";
     return text + plot + "\n";
+}
+
+/// Room around the axes, the same for all panels, so that they line up.
+std::string margins(const std::vector<Panel>& panels, int width, int height) {
+    std::size_t lines = 0;
+    for (const Panel& panel : panels) lines = std::max(lines, legend_lines(panel));
+    const bool has_titles =
+        std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.title.empty(); });
+    const double bottom = 58 + 18.0 * static_cast<double>(lines), top = has_titles ? 34 : 14;
+    return fmt::format("set multiplot layout 1,{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing {:.4f}\n", panels.size(),
+                       75.0 / width, 1 - 20.0 / width, bottom / height, 1 - top / height, 95.0 / width);
 }
 
 std::string script(const std::vector<Panel>& panels, const std::string& path, int width, int height) {
@@ -110,7 +126,7 @@ std::string script(const std::vector<Panel>& panels, const std::string& path, in
     text += fmt::format("set key above center horizontal samplen 1.5 spacing 1.1 maxcols {}\n", columns);
     text += fmt::format("set lmargin 8\nset rmargin 2\nset bmargin 4\nset tmargin {}\n",
                         2.5 + 1.4 * legend_rows(panels, columns));
-    text += fmt::format("set multiplot layout 1,{}\n", panels.size());
+    text += margins(panels, width, height);
     for (const Panel& panel : panels) text += panel_commands(panel);
     return text + "unset multiplot\n";
 }

@@ -54,6 +54,8 @@ void check(const Options& o) {
         throw UsageError("resize: give the new size by one of --size WxH, --scale S, or --width W and/or --height H");
     if (!o.size.empty()) parse_size("--size", o.size);
     if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0)) throw UsageError("--scale: must be above 0, as 0.5 or 2");
+    if (!(o.antiring >= 0 && o.antiring <= 1))  // a range check of the parser lets NaN pass
+        throw UsageError(fmt::format("--antiring: {} is out of range; pass 0 to 1", o.antiring));
     if (!o.region.empty()) parse_region(o.region);
     if (!o.background.empty()) parse_background(o.background);
     if (o.kernel != "auto" && !o.is_taps_file()) parse_kernel(o.kernel);
@@ -154,6 +156,8 @@ Output output_of(const Options& o, const ImageReader& reader, Size size) {
 
 Resizer make_resizer(const Options& o, const Grid& src, const Grid& dst, int channels, const ResizeOptions& options) {
     try {
+        require_memory(Resizer::bytes(src, dst, channels, options, o.parallel),
+                       fmt::format("resizing to {} x {} pixels", dst.x.count, dst.y.count));
         return Resizer(src, dst, channels, options);
     } catch (const Error& e) {
         if (o.is_taps_file()) throw UsageError(fmt::format("{}: {}", o.kernel, e.what()));
@@ -224,7 +228,7 @@ void add_resize(Program& program) {
            "samples, which other libraries call align_corners")->type_name("corners|centers");
     verb->add_option("--region", o->region, "Part of the source to resample, in source pixels, fractions allowed;\n"
                      "what lies around it contributes at its borders")->type_name("X,Y,W,H");
-    verb->add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1")->check(CLI::Range(0.0, 1.0))->type_name("A");
+    verb->add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1")->type_name("A");
     add_space(verb, o->space);
     verb->add_option_function<std::string>("--alpha", [o](const std::string& s) {
             if (s != "premultiply" && s != "straight") throw UsageError("--alpha: \"" + s + "\" is unknown; choose premultiply or straight");

@@ -181,8 +181,8 @@ function(bandlimit_benchmarks)
     endforeach()
 endfunction()
 
-# The fuzzers, one per fuzz/NAME_fuzz.cpp; what made one fail is kept in fuzz/corpus/NAME. As a test each replays its corpus
-# and goes on from there for ten seconds, from the same seed every time.
+# The fuzzers, one per fuzz/NAME_fuzz.cpp; seeds, and what once made one fail, are in fuzz/corpus/NAME. As a test each
+# replays these and goes on from there for ten seconds, from the same random seed every time.
 function(bandlimit_fuzzers)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
         message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")

@@ -51,7 +51,8 @@ void check_band(const char* function, double begin, double end) {
 }  // namespace
 
 double spectrum(const Kernel& kernel, double f) {
-    if (!std::isfinite(f)) fail("spectrum: f = ", f, "; pass a finite frequency, in cycles per pitch");
+    constexpr double limit = 1e6;  // a panel of quadrature for each period
+    if (!(std::abs(f) <= limit)) fail("spectrum: f = ", f, "; pass at most ", limit, " cycles per pitch");
     f = std::abs(f);
     return integrate_pieces(kernel, f, [&](double x) {
         if (is_radial(kernel)) return 2 * pi * x * kernel.value(x) * bessel_j0(2 * pi * f * x);

@@ -15,7 +15,7 @@ namespace bandlimit {
 ///         target when it is widened
 /// error   below 1e-12 of the value at 0 up to 16 cycles per pitch, for kernels of at most 100 pitches
 /// cost    16 evaluations of the kernel per panel; 4 panels, and one more per period, between two knots
-/// throws  Error unless f is finite
+/// throws  Error unless |f| <= 1e6
 double spectrum(const Kernel& kernel, double f);
 
 /// spectrum() relative to its value at 0.

@@ -183,6 +183,7 @@ struct Aligned {
     View<const float> a;
     Image<float> b;
     Vec shift;
+    double residual = 1;
 };
 
 /// The cells [begin, begin + size) of a and those `shift` further in b overlap, for the largest fast size.
@@ -218,6 +219,17 @@ Image<float> equalized(View<const float> a, const ComplexGrid& spectrum_a, const
     return out;
 }
 
+/// The share of B's power that A lacks, both weighted as gradients are.
+double residual_of(const ComplexGrid& a, const ComplexGrid& b) {
+    double missing = 0, all = 0;
+    for_band(a, [&](int x, int y, Vec f) {
+        const double weight = f.x * f.x + f.y * f.y;
+        missing += weight * std::norm(b.at(x, y) - a.at(x, y));
+        all += weight * std::norm(b.at(x, y));
+    });
+    return all > 0 ? std::min(1.0, missing / all) : 1;
+}
+
 /// Shifts b back by ever better estimates, until the phases of what is left are flat; then once more against what a
 /// looks like through b's filter.
 Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
@@ -249,7 +261,7 @@ Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
     refine();
     spectrum_a = tapered_spectrum(equalized(part, spectrum_a, spectrum_b).view());
     refine();
-    return {part, std::move(back), shift};
+    return {part, std::move(back), shift, residual_of(spectrum_a, spectrum_b)};
 }
 
 // ---- What the images allow to say ------------------------------------------------------------------------------------
@@ -335,15 +347,17 @@ Shift solve(View<const float> a, View<const float> b, Parallel parallel);
 /// The shift along x of images whose rows are all alike, or too few to tell.
 Shift solve_along_x(View<const float> a, View<const float> b, Parallel parallel) {
     const Image<float> row_a = column_means(a, parallel), row_b = column_means(b, parallel);
-    return {solve(row_a.view(), row_b.view(), parallel).x, {}};
+    const Shift shift = solve(row_a.view(), row_b.view(), parallel);
+    return {shift.x, {}, shift.residual};
 }
+
+Shift swapped(const Shift& shift) { return {shift.y, shift.x, shift.residual}; }
 
 /// The same for images that vary along one direction only.
 Shift solve_along(Vec direction, View<const float> a, View<const float> b, Parallel parallel) {
     if (a.width == 1 || a.height == 1) return {};
     if (std::abs(direction.y) < oblique) return solve_along_x(a, b, parallel);
-    if (std::abs(direction.x) < oblique)
-        return {{}, solve_along_x(transposed(a), transposed(b), parallel).x};
+    if (std::abs(direction.x) < oblique) return swapped(solve_along_x(transposed(a), transposed(b), parallel));
     return {};
 }
 
@@ -357,7 +371,7 @@ Shift solve(View<const float> a, View<const float> b, Parallel parallel) {
     const Gradient ga = gradient(aligned.a, parallel), gb = gradient(aligned.b.view(), parallel);
     if (!agree(ga, gb, both.most)) return {};
     if (!is_line && !agree(ga, gb, both.least)) return solve_along(both.most, a, b, parallel);
-    Shift shift;
+    Shift shift{{}, {}, aligned.residual};
     if (a.width > 1) shift.x = aligned.shift.x;
     if (a.height > 1) shift.y = aligned.shift.y;
     return shift;
@@ -381,7 +395,7 @@ Shift estimate_shift(View<const float> a, View<const float> b, Parallel parallel
     const View<const float> va = std::as_const(window_a).view(), vb = std::as_const(window_b).view();
     if (w.width < smallest_axis && w.height < smallest_axis) return {};
     if (w.height < smallest_axis) return solve_along_x(va, vb, parallel);
-    if (w.width < smallest_axis) return {{}, solve_along_x(transposed(va), transposed(vb), parallel).x};
+    if (w.width < smallest_axis) return swapped(solve_along_x(transposed(va), transposed(vb), parallel));
     return solve(va, vb, parallel);
 }
 

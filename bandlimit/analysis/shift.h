@@ -10,6 +10,9 @@ namespace bandlimit {
 /// A shift in samples: above 0 where the content of the second image lies right of, or below, that of the first.
 struct Shift {
     std::optional<double> x, y;  ///< none where undefined
+    /// The share of the second image's gradient energy, below a quarter of the sampling rate, that the first one does
+    /// not explain when shifted and put through a symmetric filter; 1 where nothing is defined.
+    double residual = 1;
 };
 
 /// The part of an image that estimate_shift() looks at: at most 1024 x 1024 samples around the centre.

@@ -115,6 +115,7 @@ TEST(Shift, OfIdenticalImagesIsExactlyZero) {
         const Shift shift = estimate_shift(a.view(), a.view());
         EXPECT_EQ(shift.x, 0) << size;
         EXPECT_EQ(shift.y, 0) << size;
+        EXPECT_LT(shift.residual, 1e-12) << size;  // floats
     }
 }
 
@@ -174,6 +175,23 @@ TEST(Shift, OfMatchedAndMismatchedResampling) {
         expect_shift(image.view(), filtered(small.view(), even_up, even_up).view(), 0, 0, promised, name + " even");
         expect_shift(image.view(), filtered(small.view(), odd_up, odd_up).view(), -0.5, -0.5, promised, name + " odd");
     }
+}
+
+// A filter between codes of another curve leaves more that no shift and no filter explains.
+TEST(Shift, ResidualTellsTheEncodingInWhichAFilterRan) {
+    const int n = 128;
+    const Taps blur{-2, {1 / 9., 2 / 9., 3 / 9., 2 / 9., 1 / 9.}, 1};
+    const Bank bank = make_bank(blur, n, Edge::reflect);
+    const auto squared = [](View<const float> v) {
+        Image<float> out(v.width, v.height);
+        for (int y = 0; y < v.height; ++y)
+            for (int x = 0; x < v.width; ++x) out.view()(x, y) = v(x, y) * v(x, y);
+        return out;
+    };
+    const Image<float> codes = draw(photograph(50, n), n, n), linear = squared(codes.view());
+    const Image<float> blurred = filtered(codes.view(), bank, bank), squared_later = squared(blurred.view());
+    EXPECT_LT(estimate_shift(codes.view(), blurred.view()).residual * 3,
+              estimate_shift(linear.view(), squared_later.view()).residual);
 }
 
 TEST(Shift, UnderNoise) {

@@ -89,8 +89,7 @@ void check_output_path(const std::string& path) {
     const fs::file_status parent_status = fs::status(parent, error);
     if (!fs::exists(parent_status))
         fail_file(path, "the directory ", parent.string(), " does not exist or cannot be entered; create it first");
-    if (!fs::is_directory(parent_status))
-        fail_file(path, parent.string(), " is no directory; choose another place");
+    if (!fs::is_directory(parent_status)) fail_file(path, parent.string(), " is no directory; choose another place");
     if (!may(parent, W_OK | X_OK))
         fail_file(path, "the directory ", parent.string(), " is not writable; choose another place");
 }
@@ -109,7 +108,8 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
     const std::string name = message(".bandlimit-", ::getpid(), "-", number++, target.extension().string());
     unfinished_ = (parent_of(target) / name).string();
     slot_ = take_slot(unfinished_);
-    if (slot_ < 0) fail_file(path, "the path is too long or ", slots.size(), " files are open for writing; write fewer");
+    if (slot_ < 0)
+        fail_file(path, "the path is too long or ", slots.size(), " files are open for writing; write fewer");
 
     const int descriptor = ::open(unfinished_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) {
@@ -117,7 +117,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
         free_slot(slot_);
         fail_file(path, "no file can be created there: ", text_of(error), "; choose another place");
     }
-    struct stat replaced{};
+    struct stat replaced {};
     // Permissions are a courtesy: a file system without them is no reason to fail.
     if (::stat(target_.c_str(), &replaced) == 0) (void)!::fchmod(descriptor, replaced.st_mode & 07777);
     file_ = ::fdopen(descriptor, "w+b");
@@ -164,7 +164,7 @@ bool AtomicFile::seek(std::int64_t offset) noexcept {
 std::int64_t AtomicFile::tell() noexcept { return ::ftello(file_); }
 
 std::int64_t AtomicFile::size() noexcept {
-    struct stat status{};
+    struct stat status {};
     errno = 0;
     if (std::fflush(file_) != 0 || ::fstat(::fileno(file_), &status) != 0) remember_failure();
     return status.st_size;

@@ -10,8 +10,8 @@ namespace bandlimit {
 /// A new file beside `path`, which takes its name only in commit().
 ///
 /// If `path` is a link to a file, that file is replaced and the link stays. The file that is replaced hands its
-/// permissions down. Until commit() the data are in a file called .bandlimit-PROCESS-NUMBER and the extension of `path`;
-/// remove_unfinished_files() removes it, and so does the destructor.
+/// permissions down. Until commit() the data are in a file called .bandlimit-PROCESS-NUMBER and the extension of
+/// `path`; remove_unfinished_files() removes it, and so does the destructor.
 ///
 /// read(), write() and seek() report failure as fread, fwrite and fseek do, because codecs call them; the first failure
 /// is remembered, and check() and commit() throw it.

@@ -115,10 +115,12 @@ TEST(AtomicFile, PlacesThatCannotBeWrittenAreRefused) {
     write_bytes(folder / "file", "x");
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     const auto refuses = [](const std::string& path, const std::string& word) {
-        const ::testing::AssertionResult early = fails_for(path, [&] { check_output_path(path); }, word);
+        const ::testing::AssertionResult early = fails_for(
+            path, [&] { check_output_path(path); }, word);
         if (!early) return early;
         // The path is judged before its extension and before anything else about the target.
-        return fails_for(path, [&] { ImageWriter writer(path, {}); }, word);
+        return fails_for(
+            path, [&] { ImageWriter writer(path, {}); }, word);
     };
     EXPECT_TRUE(refuses(folder / "", "a directory"));
     EXPECT_TRUE(refuses("/dev/full", "a device"));
@@ -143,8 +145,10 @@ TEST(AtomicFile, FoldersAndFilesWithoutPermissionAreRefused) {
     if (was_root) {
         ASSERT_EQ(::seteuid(65534), 0);
     }
-    EXPECT_TRUE(fails_for(folder / "locked/a.png", [&] { check_output_path(folder / "locked/a.png"); }, "not writable"));
-    EXPECT_TRUE(fails_for(folder / "precious.png", [&] { check_output_path(folder / "precious.png"); }, "write-protected"));
+    EXPECT_TRUE(fails_for(
+        folder / "locked/a.png", [&] { check_output_path(folder / "locked/a.png"); }, "not writable"));
+    EXPECT_TRUE(fails_for(
+        folder / "precious.png", [&] { check_output_path(folder / "precious.png"); }, "write-protected"));
     if (was_root) {
         ASSERT_EQ(::seteuid(0), 0);
     }
@@ -156,7 +160,8 @@ TEST(AtomicFile, AFullDiskIsReportedAndNothingIsLeft) {
     for (const std::size_t size : {std::size_t{100}, std::size_t{1} << 20}) {
         const std::string path = folder / "a.txt";
         const FileSizeLimit limit(size - 1);
-        EXPECT_TRUE(fails_for(path, [&] { write_text(path, std::string(size, 'x')); }, "cannot be written"));
+        EXPECT_TRUE(fails_for(
+            path, [&] { write_text(path, std::string(size, 'x')); }, "cannot be written"));
         EXPECT_EQ(folder.count(), 0);
     }
 }
@@ -173,10 +178,12 @@ TEST(ImageWriter, AFullDiskIsReportedWhereverItStrikes) {
         const auto size = static_cast<rlim_t>(fs::file_size(path));
         fs::remove(path);
         std::vector<rlim_t> limits{0, 1, 7, 8, 100, size / 3, size / 2, size - 1500};
-        for (rlim_t short_of = 1; short_of < 300; short_of += extension == "tif" ? 3 : 37) limits.push_back(size - short_of);
+        for (rlim_t short_of = 1; short_of < 300; short_of += extension == "tif" ? 3 : 37)
+            limits.push_back(size - short_of);
         for (const rlim_t bytes : limits) {
             const FileSizeLimit limit(bytes);
-            EXPECT_TRUE(fails_for(path, [&] { write_image(path, target, pixels(image)); }, "cannot be written"))
+            EXPECT_TRUE(fails_for(
+                path, [&] { write_image(path, target, pixels(image)); }, "cannot be written"))
                 << bytes << " of " << size;
             ASSERT_EQ(folder.count(), 0) << bytes << " of " << size;
         }

@@ -129,7 +129,8 @@ template <class Work>
         work();
     } catch (const std::runtime_error& e) {
         const std::string what = e.what();
-        if (!what.starts_with(path + ": ")) return ::testing::AssertionFailure() << "does not begin with the path: " << what;
+        if (!what.starts_with(path + ": "))
+            return ::testing::AssertionFailure() << "does not begin with the path: " << what;
         if (what.find('\n') != what.npos) return ::testing::AssertionFailure() << "more than one line: " << what;
         if (what.find("; ") == what.npos) return ::testing::AssertionFailure() << "no advice: " << what;
         if (what.find(word) == what.npos) return ::testing::AssertionFailure() << "no \"" << word << "\": " << what;

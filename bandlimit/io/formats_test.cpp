@@ -24,7 +24,9 @@ TEST(Formats, ExtensionsAreKnownInAnyCase) {
 }
 
 TEST(Formats, NearestDepthHoldsWhatIsWantedIfItCan) {
-    const auto nearest = [](const std::string& path, Depth wanted) { return nearest_depth(abilities_of(path), wanted); };
+    const auto nearest = [](const std::string& path, Depth wanted) {
+        return nearest_depth(abilities_of(path), wanted);
+    };
     for (const Depth depth : all_depths()) {
         EXPECT_EQ(nearest("x.jpg", depth), Depth::u8);
         EXPECT_EQ(nearest("x.hdr", depth), Depth::f32);
@@ -53,7 +55,8 @@ TEST(Formats, WhatAFormatCannotHoldIsRefused) {
     const Folder folder;
     const auto refuses = [&](const std::string& name, ImageTarget target, const std::string& word) {
         const std::string path = folder / name;
-        return fails_for(path, [&] { ImageWriter writer(path, target); }, word);
+        return fails_for(
+            path, [&] { ImageWriter writer(path, target); }, word);
     };
     EXPECT_TRUE(refuses("a.jpg", target_of(Depth::u8, 4, 4, 4), "background"));
     EXPECT_TRUE(refuses("a.webp", target_of(Depth::u8, 4, 4, 4), "background"));
@@ -69,9 +72,7 @@ TEST(Formats, WhatAFormatCannotHoldIsRefused) {
     EXPECT_NO_THROW(ImageWriter(folder / "a.png", pair));
     EXPECT_EQ(folder.count(), 0);
 
-    const auto is_error = [&](ImageTarget target) {
-        EXPECT_THROW(ImageWriter(folder / "a.png", target), Error);
-    };
+    const auto is_error = [&](ImageTarget target) { EXPECT_THROW(ImageWriter(folder / "a.png", target), Error); };
     is_error(target_of(Depth::u8, 0, 4, 3));
     is_error(target_of(Depth::u8, 4, 4, 0));
     ImageTarget target = target_of(Depth::u8, 4, 4, 3);
@@ -110,23 +111,27 @@ TEST(Formats, TheColourSpaceIsNotedAndUnderstood) {
     EXPECT_EQ(exr.encoding().transfer, Transfer::linear) << "EXR holds linear light, whatever is asked";
 }
 
-/// A header that claims RGB or grey, and a description: enough for who does not apply the profile.
-std::vector<std::uint8_t> profile(const std::string& space, const std::string& description) {
-    std::string text(128, '\0');
-    text[3] = static_cast<char>(128 + 4 + description.size());
+/// A header that claims RGB or grey, and one tag, the description: as much as libpng insists on.
+std::vector<std::uint8_t> profile(const std::string& space, std::string description) {
+    description.resize(32);
+    constexpr int header = 128, table = 4 + 12, size = 32;
+    std::string text(header, '\0');
+    text[3] = static_cast<char>(header + table + size);
     text.replace(8, 1, "\x02").replace(12, 8, "mntr" + space).replace(20, 4, "XYZ ").replace(36, 4, "acsp");
-    text.replace(68, 12, std::string("\0\0\xf6\xd6\0\1\0\0\0\0\xd3\x2d", 12));  // D50, which libpng insists on
-    text += std::string(4, '\0') + description;
+    text.replace(68, 12, std::string("\0\0\xf6\xd6\0\1\0\0\0\0\xd3\x2d", 12));  // D50
+    text += std::string("\0\0\0\1", 4) + "desc" + std::string("\0\0\0\x90\0\0\0\x20", 8) + description;
     return {text.begin(), text.end()};
 }
 
-ImageTarget with_profile(const Folder& folder, const std::vector<std::uint8_t>& icc, std::optional<ImageReader>& reader) {
+ImageTarget with_profile(const Folder& folder, const std::vector<std::uint8_t>& icc,
+                         std::optional<ImageReader>& reader) {
     OIIO::ImageSpec spec(8, 8, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(icc.size())), icc.data());
     spec.attribute("Copyright", "somebody");
     const std::vector<std::uint8_t> codes(8 * 8 * 3, 77);
     const auto out = OIIO::ImageOutput::create("tiff");
-    EXPECT_TRUE(out->open(folder / "in.tif", spec) && out->write_image(OIIO::TypeDesc::UINT8, codes.data()) && out->close());
+    EXPECT_TRUE(out->open(folder / "in.tif", spec) && out->write_image(OIIO::TypeDesc::UINT8, codes.data()) &&
+                out->close());
     reader.emplace(folder / "in.tif", 1);
     ImageTarget target = target_of(Depth::u8, 8, 8, 3);
     target.metadata = &reader->metadata();

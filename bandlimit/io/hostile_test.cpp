@@ -99,7 +99,8 @@ std::string tiff(std::uint32_t w, std::uint32_t h, std::uint32_t rows_per_strip,
                                                                {278, 4, rows_per_strip},
                                                                {279, 4, 100}}};
     std::string text = std::string("II*\0", 4) + number(108, 4) + std::string(100, 'x') + number(entries.size(), 2);
-    for (const auto& [tag, type, value] : entries) text += number(tag, 2) + number(type, 2) + number(1, 4) + number(value, 4);
+    for (const auto& [tag, type, value] : entries)
+        text += number(tag, 2) + number(type, 2) + number(1, 4) + number(value, 4);
     return text + number(0, 4);
 }
 
@@ -123,7 +124,8 @@ std::string exr(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t 
 
 std::string png(std::uint32_t w, std::uint32_t h, char interlace) {
     // Without the right checksum libpng would look no further: CRC-32 of the header, bit by bit.
-    const std::string head = "IHDR" + number(w, 4, true) + number(h, 4, true) + "\x08\x06" + std::string(2, '\0') + interlace;
+    const std::string head =
+        "IHDR" + number(w, 4, true) + number(h, 4, true) + "\x08\x06" + std::string(2, '\0') + interlace;
     std::uint32_t crc = 0xffffffff;
     for (const char c : head) {
         crc ^= static_cast<unsigned char>(c);
@@ -203,13 +205,20 @@ TEST(Hostile, WhatIsNoImageIsNamed) {
     write_bytes(empty, "");
     write_bytes(text, "This is no picture at all, though its name says so.\n");
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_TRUE(fails_for(missing, [&] { ImageReader reader(missing); }, "does not exist"));
-    EXPECT_TRUE(fails_for(folder / "", [&] { ImageReader reader(folder / ""); }, "is a directory"));
-    EXPECT_TRUE(fails_for(empty, [&] { ImageReader reader(empty); }, "is empty"));
-    EXPECT_TRUE(fails_for(text, [&] { ImageReader reader(text); }, "is no image"));
-    EXPECT_TRUE(fails_for(pipe, [&] { ImageReader reader(pipe); }, "a pipe"));
-    EXPECT_TRUE(fails_for("/dev/zero", [&] { ImageReader reader("/dev/zero"); }, "a device"));
-    EXPECT_TRUE(fails_for("", [&] { ImageReader reader(""); }, "does not exist"));
+    EXPECT_TRUE(fails_for(
+        missing, [&] { ImageReader reader(missing); }, "does not exist"));
+    EXPECT_TRUE(fails_for(
+        folder / "", [&] { ImageReader reader(folder / ""); }, "is a directory"));
+    EXPECT_TRUE(fails_for(
+        empty, [&] { ImageReader reader(empty); }, "is empty"));
+    EXPECT_TRUE(fails_for(
+        text, [&] { ImageReader reader(text); }, "is no image"));
+    EXPECT_TRUE(fails_for(
+        pipe, [&] { ImageReader reader(pipe); }, "a pipe"));
+    EXPECT_TRUE(fails_for(
+        "/dev/zero", [&] { ImageReader reader("/dev/zero"); }, "a device"));
+    EXPECT_TRUE(fails_for(
+        "", [&] { ImageReader reader(""); }, "does not exist"));
     EXPECT_TRUE(fails_for(text + "/x", [&] { ImageReader reader(text + "/x"); }));
 }
 
@@ -231,13 +240,15 @@ TEST(Hostile, DeepImagesAreRefused) {
     OIIO::DeepData data(spec);
     ASSERT_TRUE(out->write_deep_scanlines(0, 4, 0, data));
     out->close();
-    EXPECT_TRUE(fails_for(folder / "deep.exr", [&] { ImageReader reader(folder / "deep.exr"); }, "deep"));
+    EXPECT_TRUE(fails_for(
+        folder / "deep.exr", [&] { ImageReader reader(folder / "deep.exr"); }, "deep"));
 }
 
 TEST(Memory, MoreThanThereIsIsRefused) {
     EXPECT_NO_THROW(require_memory(0, "x"));
     EXPECT_NO_THROW(require_memory(2 << 20, "x"));
-    EXPECT_TRUE(fails_for("x", [] { require_memory(std::uint64_t{1} << 60, "x"); }, "memory"));
+    EXPECT_TRUE(fails_for(
+        "x", [] { require_memory(std::uint64_t{1} << 60, "x"); }, "memory"));
 }
 
 }  // namespace

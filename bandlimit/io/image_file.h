@@ -21,7 +21,7 @@ std::string_view name_of(Space space);
 
 /// What a file says about itself. Sizes are those of the upright picture, after its orientation tag was applied.
 struct ImageInfo {
-    std::string format;                      ///< as OpenImageIO names it: "png", "openexr", "pnm" (PFM too), ...
+    std::string format;  ///< as OpenImageIO names it: "png", "openexr", "pnm" (PFM too), ...
     int width = 0, height = 0;
     std::vector<std::string> channel_names;  ///< "R", "G", "B", "A", ...; EXR names are kept
     Depth depth = Depth::u8;                 ///< what samples are read as: the stored depth, or the next that holds it
@@ -31,7 +31,7 @@ struct ImageInfo {
     std::string color_hint;                  ///< the file's own word: "sRGB", "linear", "gamma 2.2", "" if it has none
     bool has_foreign_profile = false;        ///< an ICC profile that is not sRGB; its curve is treated as sRGB
     int levels = 1, subimages = 1;
-    int orientation = 1;                     ///< Exif orientation that was applied
+    int orientation = 1;  ///< Exif orientation that was applied
 
     int channels() const { return static_cast<int>(channel_names.size()); }
     /// The encoding to decode with when the user says `space`; for `data`, no channel is alpha.
@@ -80,22 +80,22 @@ struct ImageTarget {
     std::vector<std::string> channel_names;
     Depth depth = Depth::u8;
     int alpha = -1;
-    Transfer transfer = Transfer::srgb;                    ///< noted in the file where the format can
-    bool is_data = false;                                  ///< values are no colours: no colour space is noted
-    const ImageReader::Metadata* metadata = nullptr;       ///< taken over, with ICC profile, if not null
+    Transfer transfer = Transfer::srgb;               ///< noted in the file where the format can
+    bool is_data = false;                             ///< values are no colours: no colour space is noted
+    const ImageReader::Metadata* metadata = nullptr;  ///< taken over, with ICC profile, if not null
 };
 
 /// What a format, known by the extension of a path, can hold. Throws Error for an unknown extension, naming known ones.
 struct FormatAbilities {
-    std::string name;           ///< "png", "openexr", ...
-    std::vector<Depth> depths;  ///< best first
-    bool alpha = false;         ///< holds an alpha channel
-    bool associated = false;    ///< alpha is stored associated (EXR)
-    bool is_linear = false;     ///< holds linear light by convention (EXR, HDR, PFM)
-    bool notes_space = false;   ///< can say whether its codes are sRGB or linear (PNG)
+    std::string name;                ///< "png", "openexr", ...
+    std::vector<Depth> depths;       ///< best first
+    bool alpha = false;              ///< holds an alpha channel
+    bool associated = false;         ///< alpha is stored associated (EXR)
+    bool is_linear = false;          ///< holds linear light by convention (EXR, HDR, PFM)
+    bool notes_space = false;        ///< can say whether its codes are sRGB or linear (PNG)
     std::vector<int> channels = {};  ///< the numbers it holds: 4 are RGBA, 2 grey and alpha; empty = any, each its own
     int largest_channels = 4;
-    int largest_side = 0;         ///< pixels; 0 = no limit of its own
+    int largest_side = 0;  ///< pixels; 0 = no limit of its own
 };
 FormatAbilities abilities_of(const std::string& path);
 
@@ -104,8 +104,8 @@ Depth nearest_depth(const FormatAbilities& format, Depth wanted);
 
 /// Writes a file beside `path` and renames it when all is well: the file appears whole or not at all.
 ///
-/// A path that exists and is no regular file is refused, before its extension is looked at; directories are not created.
-/// throws   std::runtime_error as ImageReader
+/// A path that exists and is no regular file is refused, before its extension is looked at; directories are not
+/// created. throws   std::runtime_error as ImageReader
 class ImageWriter {
 public:
     ImageWriter(const std::string& path, const ImageTarget& target, int threads = 0);

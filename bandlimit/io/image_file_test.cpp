@@ -16,8 +16,14 @@ struct Exact {
     std::string extension;
     std::vector<int> channels;
 };
-const std::vector<Exact> exact{{"png", {1, 2, 3, 4}}, {"tif", {1, 2, 3, 4, 5, 7}}, {"exr", {1, 2, 3, 4, 5, 7}}, {"pgm", {1}},
-                               {"ppm", {3}},          {"pnm", {1, 3}},             {"pfm", {1, 3}},             {"tga", {1, 3, 4}},
+const std::vector<Exact> exact{{"png", {1, 2, 3, 4}},
+                               {"tif", {1, 2, 3, 4, 5, 7}},
+                               {"exr", {1, 2, 3, 4, 5, 7}},
+                               {"pgm", {1}},
+                               {"ppm", {3}},
+                               {"pnm", {1, 3}},
+                               {"pfm", {1, 3}},
+                               {"tga", {1, 3, 4}},
                                {"bmp", {1, 3}}};
 
 template <class Visit>
@@ -72,9 +78,7 @@ TEST(ImageFile, BlocksOfRowsAndAnyLayoutGiveTheSamePixels) {
 
         AnyImage again = make_image(depth, width, height, channels, Layout::planar);
         ImageReader reader(blocks, 1);
-        const auto read_block = [&](int y, int rows) {
-            reader.read_rows(y, rows_of(view_of(again), y, rows));
-        };
+        const auto read_block = [&](int y, int rows) { reader.read_rows(y, rows_of(view_of(again), y, rows)); };
         read_block(0, 5), read_block(5, 1), read_block(6, 17), read_block(23, 6);
         EXPECT_TRUE(equal(pixels(image), pixels(again)));
         // Going back, and into an upside-down view.
@@ -141,11 +145,13 @@ TEST(ImageFile, AlphaIsNeverMultipliedNorDivided) {
 }
 
 /// Writes through OpenImageIO alone: what other programs write.
-void write_elsewhere(const std::string& format, const std::string& path, const OIIO::ImageSpec& spec, const void* pixels) {
+void write_elsewhere(const std::string& format, const std::string& path, const OIIO::ImageSpec& spec,
+                     const void* pixels) {
     const auto out = OIIO::ImageOutput::create(format);
     ASSERT_TRUE(out && out->open(path, spec)) << path;
     if (spec.tile_width > 0) {
-        ASSERT_TRUE(out->write_tiles(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height, 0, 1, spec.format, pixels));
+        ASSERT_TRUE(
+            out->write_tiles(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height, 0, 1, spec.format, pixels));
     } else {
         ASSERT_TRUE(out->write_scanlines(spec.y, spec.y + spec.height, 0, spec.format, pixels));
     }
@@ -267,7 +273,8 @@ TEST(ImageFile, EverySixteenBitCodeOfPnmIsReadAndOtherWhitesAreScaled) {
     AnyImage again = read_image(folder / "a.pgm");
     EXPECT_TRUE(equal(pixels(again), AnyConstView(std::as_const(codes).view())));
 
-    write_bytes(folder / "b.pgm", std::string("P5 # white is\n#1000\n 2\t1 1000\n") + std::string("\x01\xf4\x03\xe8", 4));
+    write_bytes(folder / "b.pgm",
+                std::string("P5 # white is\n#1000\n 2\t1 1000\n") + std::string("\x01\xf4\x03\xe8", 4));
     AnyImage scaled = read_image(folder / "b.pgm");
     EXPECT_EQ(std::get<View<std::uint16_t>>(view_of(scaled))(0, 0), 32768);
     EXPECT_EQ(std::get<View<std::uint16_t>>(view_of(scaled))(1, 0), 65535);

@@ -98,10 +98,10 @@ private:
     template <class T>
     Image<T>& whole();
 
-    int next_row_ = 0;                ///< of the stored picture; what lies above was read
-    std::vector<std::byte> rows_;     ///< the tile row read last, or rows on their way to a view that is not packed
-    int first_tile_row_ = -1;         ///< the first row in rows_ if it holds a tile row
-    AnyImage whole_;                     ///< the stored picture, if it is upside down or sideways
+    int next_row_ = 0;             ///< of the stored picture; what lies above was read
+    std::vector<std::byte> rows_;  ///< the tile row read last, or rows on their way to a view that is not packed
+    int first_tile_row_ = -1;      ///< the first row in rows_ if it holds a tile row
+    AnyImage whole_;               ///< the stored picture, if it is upside down or sideways
     bool has_whole_ = false;
 };
 
@@ -157,8 +157,8 @@ void ImageReader::State::check_sizes() const {
         std::max(static_cast<std::uint64_t>(spec.width), tiles_across * static_cast<std::uint64_t>(spec.tile_width));
     const std::uint64_t pixel_bytes = static_cast<std::uint64_t>(spec.nchannels) * size_of(info.depth);
     const std::uint64_t row_bytes = saturating_product(row_pixels, pixel_bytes);
-    const std::uint64_t claimed =
-        saturating_product(static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height), pixel_bytes);
+    const std::uint64_t claimed = saturating_product(
+        static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height), pixel_bytes);
     const std::uint64_t expansion =
         largest_expansion(found.format, spec.get_string_attribute("compression"), row_bytes);
     if (expansion > 0 && claimed / expansion > found.bytes)
@@ -255,9 +255,10 @@ void ImageReader::State::read_stored(int y, const View<T>& to) {
 template <class T>
 Image<T>& ImageReader::State::whole() {
     if (!has_whole_) {
-        require_memory(saturating_product(static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height),
-                                          static_cast<std::uint64_t>(spec.nchannels) * sizeof(T)),
-                       path);
+        require_memory(
+            saturating_product(static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height),
+                               static_cast<std::uint64_t>(spec.nchannels) * sizeof(T)),
+            path);
         whole_ = guarded([&] { return Image<T>(spec.width, spec.height, spec.nchannels, Layout::interleaved); });
         read_stored(0, std::get<Image<T>>(whole_).view());
         has_whole_ = true;

@@ -34,13 +34,23 @@ private:
 
 /// Metadata that tell how the old file was stored, or that we decide ourselves.
 bool belongs_to_old_file(const std::string& name) {
-    constexpr std::array<std::string_view, 14> families{"oiio:", "tiff:",  "openexr:", "png:",  "jpeg:",
-                                                        "bmp:",  "targa:", "hdr:",     "pnm:",  "webp:",
-                                                        "exr",   "ICCProfile", "thumbnail", "textureformat"};
-    constexpr std::array<std::string_view, 14> names{
-        "Orientation", "compression", "CompressionQuality", "planarconfig", "wrapmodes",
-        "fovcot",      "Software",    "ImageWidth",         "ImageLength",  "Exif:PixelXDimension",
-        "Exif:PixelYDimension", "Exif:ColorSpace", "chunkCount", "name"};
+    constexpr std::array<std::string_view, 14> families{
+        "oiio:", "tiff:", "openexr:", "png:", "jpeg:",      "bmp:",      "targa:",
+        "hdr:",  "pnm:",  "webp:",    "exr",  "ICCProfile", "thumbnail", "textureformat"};
+    constexpr std::array<std::string_view, 14> names{"Orientation",
+                                                     "compression",
+                                                     "CompressionQuality",
+                                                     "planarconfig",
+                                                     "wrapmodes",
+                                                     "fovcot",
+                                                     "Software",
+                                                     "ImageWidth",
+                                                     "ImageLength",
+                                                     "Exif:PixelXDimension",
+                                                     "Exif:PixelYDimension",
+                                                     "Exif:ColorSpace",
+                                                     "chunkCount",
+                                                     "name"};
     const auto begins = [&](std::string_view family) { return OIIO::Strutil::istarts_with(name, family); };
     const auto is = [&](std::string_view known) { return OIIO::Strutil::iequals(name, known); };
     return std::any_of(families.begin(), families.end(), begins) || std::any_of(names.begin(), names.end(), is);
@@ -56,7 +66,8 @@ void take_over(const ImageReader::Metadata& metadata, const ImageTarget& target,
         if (!belongs_to_old_file(attribute.name().string())) spec.extra_attribs.push_back(attribute);
     // A profile belongs to codes: where those have become linear light, or were none at all, it would be wrong.
     const int colours = spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0);
-    if (!target.is_data && target.transfer == metadata.transfer && fits_profile(profile_in(metadata.attributes), colours))
+    if (!target.is_data && target.transfer == metadata.transfer &&
+        fits_profile(profile_in(metadata.attributes), colours))
         spec.extra_attribs.push_back(*metadata.attributes.find("ICCProfile"));
 }
 
@@ -64,7 +75,8 @@ void take_over(const ImageReader::Metadata& metadata, const ImageTarget& target,
 int alpha_in_file(const ImageTarget& target) {
     if (target.alpha >= 0) return target.alpha;
     for (std::size_t c = 0; c < target.channel_names.size(); ++c)
-        if (OIIO::Strutil::iequals(target.channel_names[c], "A") || OIIO::Strutil::iequals(target.channel_names[c], "alpha"))
+        if (OIIO::Strutil::iequals(target.channel_names[c], "A") ||
+            OIIO::Strutil::iequals(target.channel_names[c], "alpha"))
             return static_cast<int>(c);
     return -1;
 }
@@ -112,13 +124,13 @@ void check_target(const std::string& path, const ImageTarget& target, const Form
         fail_file(path, format.name, " holds no ", name_of(target.depth), "; choose ",
                   name_of(nearest_depth(format, target.depth)), " or another format");
     if (format.largest_side > 0 && std::max(target.width, target.height) > format.largest_side)
-        fail_file(path, format.name, " holds at most ", format.largest_side, " pixels a side, not ", target.width, " x ",
-                  target.height, "; choose TIFF or EXR");
+        fail_file(path, format.name, " holds at most ", format.largest_side, " pixels a side, not ", target.width,
+                  " x ", target.height, "; choose TIFF or EXR");
     if (target.alpha >= 0 && !format.alpha)
         fail_file(path, format.name, " is written without alpha; give a background colour, or write PNG, TIFF or EXR");
-    const bool is_held = format.channels.empty()
-                             ? channels <= format.largest_channels
-                             : std::find(format.channels.begin(), format.channels.end(), channels) != format.channels.end();
+    const bool is_held = format.channels.empty() ? channels <= format.largest_channels
+                                                 : std::find(format.channels.begin(), format.channels.end(),
+                                                             channels) != format.channels.end();
     if (!is_held) fail_file(path, format.name, " does not hold ", channels, " channels; choose TIFF or EXR");
     const bool has_implied_alpha = !format.channels.empty() && channels % 2 == 0;
     if (has_implied_alpha && alpha_in_file(target) != channels - 1 && !target.is_data)
@@ -232,8 +244,13 @@ void ImageWriter::State::write(const View<const T>& rows) {
                 packed.clear();
                 for (int x = 0; x < rows.width; ++x)
                     for (int c = 0; c < rows.channels; ++c) packed.push_back(rows(x, y, c));
-                from = {packed.data(), rows.width, 1, rows.channels, rows.channels,
-                        static_cast<std::ptrdiff_t>(rows.width) * rows.channels, 1};
+                from = {packed.data(),
+                        rows.width,
+                        1,
+                        rows.channels,
+                        rows.channels,
+                        static_cast<std::ptrdiff_t>(rows.width) * rows.channels,
+                        1};
             }
             const auto size = static_cast<OIIO::stride_t>(sizeof(T));
             guarded([&] {

@@ -30,7 +30,8 @@ std::uint64_t available_memory() {
 
 std::string gigabytes(std::uint64_t bytes) {
     std::ostringstream text;
-    text << std::fixed << std::setprecision(bytes < 10'000'000'000 ? 2 : 0) << static_cast<double>(bytes) / 1e9 << " GB";
+    text << std::fixed << std::setprecision(bytes < 10'000'000'000 ? 2 : 0) << static_cast<double>(bytes) / 1e9
+         << " GB";
     return text.str();
 }
 

@@ -9,8 +9,8 @@ namespace bandlimit {
 namespace {
 
 /// Where the stored sample (x, y) of w x h belongs in the upright picture, from the text of the standard: the first row
-/// is the visual top, top, bottom, bottom, left, right, right, left; the first column the left, right, right, left, top,
-/// top, bottom, bottom.
+/// is the visual top, top, bottom, bottom, left, right, right, left; the first column the left, right, right, left,
+/// top, top, bottom, bottom.
 std::pair<int, int> place(int orientation, int x, int y, int w, int h) {
     const int right = w - 1 - x, down = h - 1 - y;
     switch (orientation) {

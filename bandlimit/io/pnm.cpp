@@ -54,7 +54,8 @@ std::optional<PnmLayout> find_pnm_of_16_bits(const std::string& path) {
 }
 
 bool read_pnm_rows(const std::string& path, const PnmLayout& layout, int y, const View<std::uint16_t>& view) {
-    const std::size_t row_bytes = static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.channels) * 2;
+    const std::size_t row_bytes =
+        static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.channels) * 2;
     std::vector<unsigned char> bytes(row_bytes);
     std::ifstream in(path, std::ios::binary);
     in.seekg(layout.start + static_cast<std::int64_t>(row_bytes) * y);
@@ -73,16 +74,19 @@ bool read_pnm_rows(const std::string& path, const PnmLayout& layout, int y, cons
 
 PnmLayout write_pnm_header(AtomicFile& file, int width, int height, int channels, Depth depth) {
     const bool is_float = depth == Depth::f32;
-    const std::string header =
-        message(is_float ? (channels == 1 ? "Pf" : "PF") : (channels == 1 ? "P5" : "P6"), '\n', width, ' ', height, '\n',
-                is_float ? "-1.0" : depth == Depth::u8 ? "255" : "65535", '\n');
+    const std::string header = message(is_float ? (channels == 1 ? "Pf" : "PF") : (channels == 1 ? "P5" : "P6"), '\n',
+                                       width, ' ', height, '\n',
+                                       is_float             ? "-1.0"
+                                       : depth == Depth::u8 ? "255"
+                                                            : "65535",
+                                       '\n');
     file.write(header.data(), header.size());
     return {width, height, channels, depth, static_cast<std::int64_t>(header.size()), 65535};
 }
 
 void write_pnm_rows(AtomicFile& file, const PnmLayout& layout, int y, const AnyConstView& view) {
-    const auto row_bytes = static_cast<std::int64_t>(layout.width) * layout.channels *
-                           static_cast<std::int64_t>(size_of(layout.depth));
+    const auto row_bytes =
+        static_cast<std::int64_t>(layout.width) * layout.channels * static_cast<std::int64_t>(size_of(layout.depth));
     std::vector<unsigned char> bytes;
     std::visit(
         [&](const auto& rows) {

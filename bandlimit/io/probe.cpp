@@ -45,7 +45,8 @@ int read_u16(std::FILE* file) {
     return low == EOF ? -1 : high * 256 + low;
 }
 
-/// The coefficients of a progressive or arithmetic multi-scan JPEG, all of which libjpeg keeps while it decodes; else 0.
+/// The coefficients of a progressive or arithmetic multi-scan JPEG, all of which libjpeg keeps while it decodes; else
+/// 0.
 std::uint64_t jpeg_memory(std::FILE* file) {
     std::fseek(file, 2, SEEK_SET);
     for (;;) {
@@ -111,10 +112,10 @@ Probe probe(const std::string& path) {
 }
 
 std::uint64_t largest_expansion(const std::string& format, const std::string& compression, std::uint64_t row_bytes) {
-    if (format == "png") return deflate_expansion * 8 * 4;  // one bit of a palette becomes four bytes
-    if (format == "pnm") return 8;                          // eight pixels in a byte
-    if (format == "targa") return run_expansion * 4;        // one byte of a palette becomes four
-    if (format == "hdr") return row_bytes / 4 + 1;          // a row takes four bytes, however wide it is
+    if (format == "png") return deflate_expansion * 8 * 4;           // one bit of a palette becomes four bytes
+    if (format == "pnm") return 8;                                   // eight pixels in a byte
+    if (format == "targa") return run_expansion * 4;                 // one byte of a palette becomes four
+    if (format == "hdr") return row_bytes / 4 + 1;                   // a row takes four bytes, however wide it is
     if (format == "tiff") return expansion_of(compression) * 8 * 3;  // one bit of a palette becomes three bytes
     if (format == "openexr") return expansion_of(compression) * 4;   // half becomes float; pxr24 drops a byte of four
     return 0;

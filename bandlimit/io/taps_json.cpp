@@ -28,10 +28,11 @@ constexpr int deepest = 16;  // braces and brackets around anything in such a fi
 
 /// `value` as an integer in [low, high]; `what` names it in the error.
 int integer(const json& value, int low, int high, const std::string& name, const char* what) {
-    const bool is_in_range = value.is_number_integer() &&
-                             (value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(high)
-                                                         : value.get<std::int64_t>() >= low) &&
-                             value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
+    const bool is_in_range =
+        value.is_number_integer() &&
+        (value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(high)
+                                    : value.get<std::int64_t>() >= low) &&
+        value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
     if (!is_in_range) fail_file(name, "\"", what, "\" is no whole number from ", low, " to ", high, "; correct it");
     return value.get<int>();
 }

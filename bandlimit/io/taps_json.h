@@ -3,9 +3,9 @@
 //     { "version": 1,
 //       "kind": "downsample",                               what made them
 //       "factor": 2,                                        input samples under one output sample, 1 to 4096
-//       "error": 0.0123,                                    optional: what the design minimised, as its maker defines it
-//       "cost": 4,                                          optional: reads per output sample
-//       "taps": { "first": -1, "weights": [ ... ] } }       out[i] = sum_j weights[j] * in[i * factor + first + j]
+//       "error": 0.0123,                                    optional: what the design minimised, as its maker defines
+//       it "cost": 4,                                          optional: reads per output sample "taps": { "first": -1,
+//       "weights": [ ... ] } }       out[i] = sum_j weights[j] * in[i * factor + first + j]
 //
 // Other keys are allowed and ignored. Limits: 65536 weights, |first| <= 1000000, 16 MB of text.
 #pragma once

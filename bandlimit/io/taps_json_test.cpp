@@ -38,27 +38,55 @@ TEST(TapsJson, WhatIsOptionalMayBeMissingAndOtherKeysAreIgnored) {
     const TapsFile file = parse_taps(R"({"version":1,"terms":[{"column":[1],"row":[2]}],"author":{"name":"me"}})", "x");
     EXPECT_EQ(file.factor, 1);
     EXPECT_FALSE(file.taps || file.error || file.cost);
-    EXPECT_TRUE(fails_for("x", [&] { taps_of(file, "x"); }, "holds no 1D taps"));
+    EXPECT_TRUE(fails_for(
+        "x", [&] { taps_of(file, "x"); }, "holds no 1D taps"));
 }
 
 TEST(TapsJson, HostileTextIsOneClearError) {
     const auto with_taps = [](const std::string& taps) { return R"({"version":1,"taps":)" + taps + "}"; };
     std::string many = "[0";
     for (int i = 0; i < 65536; ++i) many += ",0";
-    const std::vector<std::string> texts{
-        "", "x", "{", "[]", "1", "null", "\"taps\"", "{\"version\":1", std::string("\0\0", 2), "\xff\xfe",
-        "{}", R"({"version":2})", R"({"version":"1"})", R"({"version":1.0})", R"({"version":18446744073709551617})",
-        R"({"version":1,"factor":0})", R"({"version":1,"factor":4097})", R"({"version":1,"factor":2.5})",
-        R"({"version":1,"factor":-9223372036854775808})", R"({"version":1,"factor":18446744073709551615})",
-        R"({"version":1,"kind":3})", R"({"version":1,"error":"small"})", R"({"version":1,"cost":1e999})",
-        with_taps("3"), with_taps("{}"), with_taps(R"({"first":0})"), with_taps(R"({"first":0,"weights":[]})"),
-        with_taps(R"({"first":0,"weights":{"a":1}})"), with_taps(R"({"first":0,"weights":[1,"2"]})"),
-        with_taps(R"({"first":0,"weights":[NaN]})"), with_taps(R"({"first":0,"weights":[Infinity]})"),
-        with_taps(R"({"first":0,"weights":[1e400]})"), with_taps(R"({"first":0,"weights":[null]})"),
-        with_taps(R"({"first":1000001,"weights":[1]})"), with_taps(R"({"first":-1000001,"weights":[1]})"),
-        with_taps(R"({"first":18446744073709551615,"weights":[1]})"), with_taps(R"({"first":"0","weights":[1]})"),
-        with_taps(R"({"first":0,"weights":)" + many + "]}"), std::string(1000000, '['),
-        R"({"version":1,"a":)" + std::string(1000, '[') + std::string(1000, ']') + "}", std::string((16 << 20) + 1, ' ')};
+    const std::vector<std::string> texts{"",
+                                         "x",
+                                         "{",
+                                         "[]",
+                                         "1",
+                                         "null",
+                                         "\"taps\"",
+                                         "{\"version\":1",
+                                         std::string("\0\0", 2),
+                                         "\xff\xfe",
+                                         "{}",
+                                         R"({"version":2})",
+                                         R"({"version":"1"})",
+                                         R"({"version":1.0})",
+                                         R"({"version":18446744073709551617})",
+                                         R"({"version":1,"factor":0})",
+                                         R"({"version":1,"factor":4097})",
+                                         R"({"version":1,"factor":2.5})",
+                                         R"({"version":1,"factor":-9223372036854775808})",
+                                         R"({"version":1,"factor":18446744073709551615})",
+                                         R"({"version":1,"kind":3})",
+                                         R"({"version":1,"error":"small"})",
+                                         R"({"version":1,"cost":1e999})",
+                                         with_taps("3"),
+                                         with_taps("{}"),
+                                         with_taps(R"({"first":0})"),
+                                         with_taps(R"({"first":0,"weights":[]})"),
+                                         with_taps(R"({"first":0,"weights":{"a":1}})"),
+                                         with_taps(R"({"first":0,"weights":[1,"2"]})"),
+                                         with_taps(R"({"first":0,"weights":[NaN]})"),
+                                         with_taps(R"({"first":0,"weights":[Infinity]})"),
+                                         with_taps(R"({"first":0,"weights":[1e400]})"),
+                                         with_taps(R"({"first":0,"weights":[null]})"),
+                                         with_taps(R"({"first":1000001,"weights":[1]})"),
+                                         with_taps(R"({"first":-1000001,"weights":[1]})"),
+                                         with_taps(R"({"first":18446744073709551615,"weights":[1]})"),
+                                         with_taps(R"({"first":"0","weights":[1]})"),
+                                         with_taps(R"({"first":0,"weights":)" + many + "]}"),
+                                         std::string(1000000, '['),
+                                         R"({"version":1,"a":)" + std::string(1000, '[') + std::string(1000, ']') + "}",
+                                         std::string((16 << 20) + 1, ' ')};
     for (const std::string& text : texts)
         EXPECT_TRUE(fails_for("evil.json", [&] { parse_taps(text, "evil.json"); })) << text.substr(0, 100);
 }
@@ -74,9 +102,12 @@ TEST(TapsJson, EveryPrefixFailsOrIsWhole) {
 TEST(TapsJson, FilesThatCannotBeReadOrWritten) {
     const Folder folder;
     const std::string missing = folder / "none.json", nowhere = folder / "no/taps.json";
-    EXPECT_TRUE(fails_for(missing, [&] { read_taps(missing); }, "does not exist"));
-    EXPECT_TRUE(fails_for(folder / "", [&] { read_taps(folder / ""); }, "no regular file"));
-    EXPECT_TRUE(fails_for(nowhere, [&] { write_taps(nowhere, example()); }, "create it"));
+    EXPECT_TRUE(fails_for(
+        missing, [&] { read_taps(missing); }, "does not exist"));
+    EXPECT_TRUE(fails_for(
+        folder / "", [&] { read_taps(folder / ""); }, "no regular file"));
+    EXPECT_TRUE(fails_for(
+        nowhere, [&] { write_taps(nowhere, example()); }, "create it"));
     TapsFile file = example();
     file.taps->weights.push_back(std::numeric_limits<double>::quiet_NaN());
     EXPECT_THROW(write_taps(folder / "a.json", file), Error);

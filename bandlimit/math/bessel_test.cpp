@@ -57,6 +57,16 @@ TEST(Sinc, IsExactAtIntegersAndHalves) {
     }
 }
 
+TEST(Sinc, IsExactBesideIntegers) {
+    for (const double small : {0x1p-20, 0x1p-30, 0x1p-40}) {
+        const double exact = pi * small;  // less its cube over 6: 1e-12 of it for the first
+        for (const int k : {0, 1, 2, 7}) {
+            EXPECT_NEAR(std::abs(sin_pi(k + small)), exact, 2e-12 * exact) << k;
+            EXPECT_NEAR(std::abs(sin_pi(k - small)), exact, 2e-12 * exact) << k;
+        }
+    }
+}
+
 TEST(Sinc, AgreesWithTheSine) {
     for (double x = -10; x <= 10; x += 0.0137) {
         // The library sine of pi x carries the rounding of its argument: up to 10 pi 2^-53.

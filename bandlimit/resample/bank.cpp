@@ -174,6 +174,16 @@ Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge
     return builder.take();
 }
 
+std::uint64_t bank_bytes(double radius, const Axis& src, const Axis& dst) {
+    const Mapping mapping(src, dst);
+    const double count = dst.count, taps = 2 * radius * mapping.stretch() + 2;
+    const double phases = mapping.units() > 1 ? mapping.units() / 2 : count;  // no ratio: every output has its own
+    const double cut = 2 * taps / std::abs(mapping.step());                   // rows that reach outside, at both ends
+    // A row is held in double while it is made, and vectors grow by doubling; the rest are nodes and book-keeping.
+    const double bytes_per_row = 24 * taps + 256;
+    return static_cast<std::uint64_t>(count * sizeof(Bank::Output) + std::min(count, phases + cut) * bytes_per_row);
+}
+
 Bank make_bank(const Taps& taps, const Axis& src, const Axis& dst, Edge edge) {
     if (taps.weights.empty() ||
         !std::all_of(taps.weights.begin(), taps.weights.end(), [](double w) { return std::isfinite(w); }))

@@ -1,6 +1,7 @@
 // One row of weights per output sample.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct Bank {
 ///          an output has no weight inside the source
 /// cost     one evaluation of the kernel per weight of a distinct row
 Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge);
+
+/// About how much memory make_bank takes for a kernel of this radius, in bytes: known before anything is allocated.
+std::uint64_t bank_bytes(double radius, const Axis& src, const Axis& dst);
 
 /// The bank that applies `taps` as they are. dst must be coarser than src by exactly taps.factor, in the same place.
 ///

@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#ifdef __FAST_MATH__
+#error "bandlimit needs IEEE arithmetic: results are defined to the bit, and NaN is data. Compile without -ffast-math."
+#endif
+
 namespace bandlimit {
 namespace {
 

@@ -88,6 +88,14 @@ Bank bank_of(const Reconstruction& reconstruction, const Axis& src, const Axis& 
     return make_bank(kernel, src, dst, edge);
 }
 
+/// Half the source samples, at their own pitch, that an output reads before it is widened.
+double radius_of(const Reconstruction& reconstruction, const Axis& src, const Axis& dst) {
+    if (const Taps* taps = std::get_if<Taps>(&reconstruction))
+        return static_cast<double>(taps->weights.size()) / (2 * Mapping(src, dst).stretch());
+    const Kernel* given = std::get_if<Kernel>(&reconstruction);
+    return given ? given->radius : auto_kernel(src, dst).radius;
+}
+
 /// Multiply-adds per sample of the source if one axis is filtered before the other.
 double cost(double step_first, double step_second) {
     const auto taps = [](double step) { return std::max(1.0, std::abs(step)); };
@@ -251,6 +259,24 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
 Resizer::~Resizer() = default;
 Resizer::Resizer(Resizer&&) noexcept = default;
 Resizer& Resizer::operator=(Resizer&&) noexcept = default;
+
+std::uint64_t Resizer::bytes(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options,
+                             Parallel parallel) {
+    const Mapping x(src.x, dst.x), y(src.y, dst.y);
+    const double radius_x = radius_of(options.reconstruction, src.x, dst.x);
+    const double radius_y = radius_of(options.reconstruction, src.y, dst.y);
+    const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
+    const bool radial = kernel && is_radial(*kernel);
+    const std::uint64_t banks = radial ? 0 : bank_bytes(radius_x, src.x, dst.x) + bank_bytes(radius_y, src.y, dst.y);
+    const bool x_first = !radial && cost(x.step(), y.step()) < cost(y.step(), x.step());
+    // The window of a run and its blocks of rows.
+    const double outputs = std::min(block_rows, dst.y.count);
+    const double read = std::min<double>(2 * radius_y * y.stretch() + outputs * std::abs(y.step()) + 1, src.y.count);
+    const double window = 1.25 * read * (x_first ? dst.x.count : src.x.count);
+    const double blocks = block_rows * (static_cast<double>(src.x.count) + dst.x.count);
+    const double runs = std::clamp(std::ceil(double(dst.y.count) / smallest_run), 1.0, double(parallel.count()));
+    return banks + static_cast<std::uint64_t>(runs * (window + blocks) * channels * sizeof(float));
+}
 
 const std::string& Resizer::kernel_x() const { return plan_->kernel_x; }
 const std::string& Resizer::kernel_y() const { return plan_->kernel_y; }

@@ -1,5 +1,6 @@
 // Resampling of whole images, from stored samples to stored samples.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
@@ -66,6 +67,10 @@ public:
     /// throws  Error as make_bank and Mapping, for antiring outside 0..1, and for channels < 1
     Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options = {});
     ~Resizer();
+    /// About how much memory such a Resizer takes, its runs by so many threads included, in bytes: known before anything
+    /// is allocated. Throws Error as Mapping.
+    static std::uint64_t bytes(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options,
+                               Parallel parallel);
     Resizer(Resizer&&) noexcept;
     Resizer& operator=(Resizer&&) noexcept;
 

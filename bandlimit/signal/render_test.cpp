@@ -95,12 +95,28 @@ TEST(Render, ExactUnderAnyKernelIsTheLimitOfSupersampling) {
 
 TEST(Render, ExactUnderAKernelScalesAWaveByItsTransform) {
     // The transform of tent is sinc^2, along each axis.
-    const Signal wave = stripes({.period = 5, .angle = 30, .sinusoid = true});
-    const Image<float> seen = render(wave, 16, 16, Sampling::exact(tent()));
-    const double fx = std::cos(std::numbers::pi / 6) / 5, fy = 0.1;
-    const double gain = std::pow(sinc(fx) * sinc(fy), 2);
-    const Image<float> expected = render(with_range(wave, 0.5 - gain / 2, 0.5 + gain / 2), 16, 16);
-    EXPECT_LT(largest_difference(seen, expected), 1.2e-7);  // two roundings to float
+    for (const double frequency : {0.2, 20.3}) {
+        const Signal wave = stripes({.period = 1 / frequency, .angle = 30, .sinusoid = true});
+        const Image<float> seen = render(wave, 16, 16, Sampling::exact(tent()));
+        const double fx = std::cos(std::numbers::pi / 6) * frequency, fy = frequency / 2;
+        const double gain = std::pow(sinc(fx) * sinc(fy), 2);
+        const Image<float> expected = render(with_range(wave, 0.5 - gain / 2, 0.5 + gain / 2), 16, 16);
+        EXPECT_LT(largest_difference(seen, expected), 1.2e-7);  // two roundings to float
+    }
+}
+
+TEST(Render, SupersamplingGoesOnBeyondTheBorder) {
+    // A kernel that reaches 2.4 pixels out from the first pixel centre's cell, on a ramp that goes on there.
+    const Signal slope = ramp({16, 16}, {.angle = 20, .length = 64});
+    const Image<float> seen = render(slope, 16, 16, Sampling::supersampled(kaiser(2.9, 3), 8));
+    EXPECT_LT(largest_difference(seen, render(slope, 16, 16)), float_bound(48));
+}
+
+TEST(Render, ManyBlocksAreOneImage) {
+    // 256 samples to the pixel make blocks of 64 rows.
+    const Signal slope = ramp({2, 80}, {.angle = 90});
+    const Image<float> seen = render(slope, 2, 80, Sampling::supersampled(box(), 256));
+    EXPECT_LT(largest_difference(seen, render(slope, 2, 80)), float_bound(256));
 }
 
 TEST(Render, AnIdealLowPassKeepsOrRemovesAWave) {

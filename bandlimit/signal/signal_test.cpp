@@ -226,6 +226,14 @@ TEST(Chirp, IsTheSameTurned) {
     }
 }
 
+TEST(Chirp, FastOnesAverageOut) {
+    const Signal fast = chirp({64, 64}, {.from = 40.3, .to = 40.3, .angle = 33});
+    const double turn = 33 * pi / 180, fx = 40.3 * std::cos(turn), fy = 40.3 * std::sin(turn);
+    const double gain = std::sin(pi * fx) / (pi * fx) * std::sin(pi * fy) / (pi * fy);
+    for (double x = 3; x < 60; x += 4.3)
+        EXPECT_NEAR(fast.mean({x, 9, x + 1, 10}) - 0.5, gain * (fast.value(x + 0.5, 9.5) - 0.5), 1e-12);
+}
+
 TEST(StepEdge, CoversWhatLiesBeyondIt) {
     EXPECT_NEAR(total(step_edge({16, 12}, {.angle = 0, .offset = 1.25}), 16, 12), 12 * 6.75, 1e-12);
     EXPECT_NEAR(total(step_edge({16, 12}, {.angle = 90, .offset = 1.25}), 16, 12), 16 * 4.75, 1e-12);
