@@ -1,5 +1,7 @@
 // bandlimit VERB: parses the command line, runs the verb, and turns exceptions into one line and an exit code.
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -19,20 +21,24 @@ extern "C" void stop(int signal_number) {
 
 void handle_signals() {
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then shows as an error of write, like a full disk
-    for (const int s : {SIGINT, SIGTERM, SIGHUP}) std::signal(s, stop);
+    for (const int s : {SIGINT, SIGTERM, SIGHUP})
+        if (std::signal(s, stop) == SIG_IGN) std::signal(s, SIG_IGN);  // nohup means it
 }
 
-/// Sets program.selected, or returns the exit code of a command line that asks for nothing to run.
+/// Keeps the numbers of closed standard streams from going to files. What is written there fails, as it did before.
+void reserve_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) < 0) (void)!open("/dev/null", O_RDONLY);  // takes the lowest free number: this one
+}
+
+/// Sets program.selected, or returns the exit code of a command line that is wrong.
 std::optional<int> parse(app::Program& program, int argc, char** argv) {
     try {
         program.cli.parse(argc, argv);
         return {};
-    } catch (const CLI::CallForHelp& e) {
-        return program.cli.exit(e);
-    } catch (const CLI::CallForAllHelp& e) {
-        return program.cli.exit(e);
-    } catch (const CLI::CallForVersion& e) {
-        return program.cli.exit(e);
+    } catch (const CLI::Success& asks) {  // for help or the version
+        program.selected = [&program, asks] { program.cli.exit(asks); };
+        return {};
     } catch (const CLI::ParseError& e) {
         app::print_error(std::string(e.what()) + "; see bandlimit --help, or bandlimit VERB --help");
     } catch (const app::UsageError& e) {
@@ -47,9 +53,10 @@ std::optional<int> parse(app::Program& program, int argc, char** argv) {
 }
 
 int run(const std::function<void()>& work) {
+    constexpr const char* no_stdout = "stdout cannot be written; is it closed, or the disk full?";
     try {
         work();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw std::runtime_error("stdout cannot be written; is the disk full?");
+        if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw std::runtime_error(no_stdout);
         return 0;
     } catch (const app::UsageError& e) {
         app::print_error(e.what());
@@ -57,7 +64,7 @@ int run(const std::function<void()>& work) {
     } catch (const std::bad_alloc&) {
         app::print_error("memory is exhausted; use a smaller size, or close other programs");
     } catch (const std::exception& e) {
-        app::print_error(e.what());
+        app::print_error(std::ferror(stdout) ? no_stdout : e.what());
     }
     return 1;
 }
@@ -65,6 +72,7 @@ int run(const std::function<void()>& work) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    reserve_standard_streams();
     handle_signals();
     app::silence_codecs();
     app::Program program;

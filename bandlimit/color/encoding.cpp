@@ -123,8 +123,8 @@ void check_row(std::size_t samples, int width, int channels, const char* functio
              " channels are needed");
 }
 
-/// Calls visit(stored sample, working sample) along row `y` of `image`: for the channels that `chosen` admits, or in one
-/// go over everything where all are admitted and the samples lie side by side.
+/// Calls visit(stored sample, working sample) along row `y` of `image`: for the channels that `chosen` admits, or in
+/// one go over everything where all are admitted and the samples lie side by side.
 template <class T, class Working, class Chosen, class Visit>
 void for_each_sample(View<T> image, int y, Working* row, Chosen chosen, Visit visit) {
     const std::ptrdiff_t width = image.width, channels = image.channels;
@@ -156,14 +156,16 @@ template <class T>
 void decode_typed(View<const T> image, int y, const Encoding& stored, std::span<float> row) {
     for_each_sample(image, y, row.data(), LinearChannels{stored}, [](T v, float& to) { to = load_linear(v); });
     if (stored.transfer == Transfer::linear) return;
-    for_each_sample(image, y, row.data(), CurvedChannels{stored}, [load = SrgbLoader<T>{}](T v, float& to) { to = load(v); });
+    for_each_sample(image, y, row.data(), CurvedChannels{stored},
+                    [load = SrgbLoader<T>{}](T v, float& to) { to = load(v); });
 }
 
 template <class T>
 void encode_typed(std::span<const float> row, View<T> image, int y, const Encoding& stored) {
     for_each_sample(image, y, row.data(), LinearChannels{stored}, [](T& to, float v) { store_linear(to, v); });
     if (stored.transfer == Transfer::linear) return;
-    for_each_sample(image, y, row.data(), CurvedChannels{stored}, [store = SrgbStorer<T>{}](T& to, float v) { store(to, v); });
+    for_each_sample(image, y, row.data(), CurvedChannels{stored},
+                    [store = SrgbStorer<T>{}](T& to, float v) { store(to, v); });
 }
 
 /// Calls change(colour sample, alpha) for every colour sample of an interleaved row.

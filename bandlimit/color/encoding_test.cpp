@@ -21,9 +21,7 @@ using Row = std::vector<float>;
 long double exact_encode(long double x) {
     return x <= 0.0031308L ? 12.92L * x : 1.055L * std::pow(x, 1 / 2.4L) - 0.055L;
 }
-long double exact_decode(long double x) {
-    return x <= 0.04045L ? x / 12.92L : std::pow((x + 0.055L) / 1.055L, 2.4L);
-}
+long double exact_decode(long double x) { return x <= 0.04045L ? x / 12.92L : std::pow((x + 0.055L) / 1.055L, 2.4L); }
 
 template <class T>
 Row decoded(const Image<T>& image, const Encoding& stored, bool premultiplied) {
@@ -220,7 +218,8 @@ TEST(Encoding, FollowsStridesAndRows) {
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 5; ++x)
             for (int c = 0; c < 2; ++c)
-                planar.view()(x, y, c) = interleaved.view()(x, y, c) = static_cast<std::uint16_t>(1000 * y + 10 * x + c);
+                planar.view()(x, y, c) = interleaved.view()(x, y, c) =
+                    static_cast<std::uint16_t>(1000 * y + 10 * x + c);
     for (int y = 0; y < 3; ++y) {
         Row a(10), b(10);
         decode_row(View<const std::uint16_t>(planar.view()), y, {Transfer::srgb}, false, a);

@@ -49,7 +49,8 @@ TEST(Parallel, KeepsNoMoreThreadsBusyThanAsked) {
         std::atomic<int> busy{0}, most{0};
         parallel_for(64, 1, {threads}, [&](std::ptrdiff_t, std::ptrdiff_t) {
             const int now = ++busy;
-            for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {}
+            for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+            }
             std::this_thread::sleep_for(std::chrono::microseconds(200));
             --busy;
         });

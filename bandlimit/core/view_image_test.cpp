@@ -55,7 +55,8 @@ TEST(View, OperationsCompose) {
     expect_everywhere(transposed(transposed(v)), 6, 4, 2, same);
     expect_everywhere(transposed(flipped_y(transposed(v))), 6, 4, 2,
                       [](int x, int y, int c) { return label(5 - x, y, c); });
-    expect_everywhere(cropped(flipped_x(v), 1, 0, 3, 4), 3, 4, 2, [](int x, int y, int c) { return label(4 - x, y, c); });
+    expect_everywhere(cropped(flipped_x(v), 1, 0, 3, 4), 3, 4, 2,
+                      [](int x, int y, int c) { return label(4 - x, y, c); });
 }
 
 TEST(View, SameShapeComparesAllThree) {

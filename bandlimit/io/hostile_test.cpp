@@ -198,6 +198,15 @@ TEST(Hostile, PromisesThatCannotBeKeptAreRefusedQuicklyAndWithLittleMemory) {
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200 * 1024);
 }
 
+TEST(Hostile, AnInterlacedPictureIsRefusedForTheMemoryItNeeds) {
+    // Long enough to hold what it claims, as far as anybody can tell: 4 TB of pixels.
+    const Folder folder;
+    const std::string path = folder / "a.png";
+    write_bytes(path, png(1000000, 1000000, 1));
+    std::filesystem::resize_file(path, 130 << 20);
+    EXPECT_TRUE(fails_for(path, [&] { ImageReader reader(path); }, "memory"));
+}
+
 TEST(Hostile, WhatIsNoImageIsNamed) {
     const Folder folder;
     const std::string missing = folder / "none.png", empty = folder / "empty.png", text = folder / "text.png";

@@ -89,7 +89,6 @@ private:
     void count_parts();
     template <class Work>
     auto guarded(Work work);
-    void start_over();
 
     template <class T>
     void read_scanlines(int y, const View<T>& to);
@@ -98,7 +97,6 @@ private:
     template <class T>
     Image<T>& whole();
 
-    int next_row_ = 0;             ///< of the stored picture; what lies above was read
     std::vector<std::byte> rows_;  ///< the tile row read last, or rows on their way to a view that is not packed
     int first_tile_row_ = -1;      ///< the first row in rows_ if it holds a tile row
     AnyImage whole_;               ///< the stored picture, if it is upside down or sideways
@@ -174,13 +172,8 @@ void ImageReader::State::count_parts() {
         while (info.subimages < most_counted && input->seek_subimage(info.subimages, 0)) ++info.subimages;
         return true;
     });
-    start_over();
-}
-
-void ImageReader::State::start_over() {
     input->close();
     open();
-    next_row_ = 0;
 }
 
 template <class T>
@@ -191,7 +184,6 @@ void ImageReader::State::read_scanlines(int y, const View<T>& to) {
                 fail_file(path, "rows ", y, " to ", y + to.height - 1, " are missing; the file is cut short");
             return;
         }
-    if (y < next_row_) start_over();
     const auto pixel_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * to.channels;
     const auto row_bytes = to.height > 1 ? static_cast<OIIO::stride_t>(sizeof(T)) * to.dy : pixel_bytes * to.width;
     const bool is_read = guarded([&] {
@@ -202,7 +194,6 @@ void ImageReader::State::read_scanlines(int y, const View<T>& to) {
     if (!is_read || input->has_error())
         fail_file(path, "rows ", y, " to ", y + to.height - 1, " cannot be read: ", one_line(input->geterror()),
                   "; the file is damaged or cut short");
-    next_row_ = y + to.height;
 }
 
 template <class T>

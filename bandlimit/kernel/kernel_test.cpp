@@ -71,9 +71,9 @@ TEST(Kernel, IsTheMeanOfBothSidesWhereItJumps) {
 }
 
 TEST(Kernel, InterpolatingOnesAreExactAtIntegers) {
-    for (const Kernel& kernel : {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), cubic(0, 1), cubic(0, 0),
-                                 lanczos(1), lanczos(2), lanczos(3), lanczos(7), truncated_sinc(4), truncated_sinc(2.5),
-                                 kaiser(4, 6), kaiser(2.5, 9), radial_lanczos(2)}) {
+    for (const Kernel& kernel : {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), cubic(0, 1),
+                                 cubic(0, 0), lanczos(1), lanczos(2), lanczos(3), lanczos(7), truncated_sinc(4),
+                                 truncated_sinc(2.5), kaiser(4, 6), kaiser(2.5, 9), radial_lanczos(2)}) {
         EXPECT_EQ(kernel.value(0), 1) << kernel.name;
         for (int k = 1; k <= 9; ++k) EXPECT_EQ(kernel.value(k), 0) << kernel.name << ' ' << k;
     }
@@ -97,7 +97,8 @@ TEST(Kernel, IntegralIsOneWhereItShouldBe) {
     EXPECT_NEAR(integral(gaussian(0.5)), 0.5 * std::sqrt(2 * std::numbers::pi) * std::erf(4 / std::sqrt(2.0)), 1e-14);
     // Si(4 pi) 2 / pi, from Si by its own integral.
     const auto integrand = [](double t) { return t == 0 ? 1 : std::sin(t) / t; };
-    EXPECT_NEAR(integral(truncated_sinc(4)), 2 / std::numbers::pi * integrate(integrand, 0, 4 * std::numbers::pi, 16), 1e-14);
+    EXPECT_NEAR(integral(truncated_sinc(4)), 2 / std::numbers::pi * integrate(integrand, 0, 4 * std::numbers::pi, 16),
+                1e-14);
 }
 
 TEST(Kernel, KnotsLieInsideAndMarkEveryJumpOfPiecewisePolynomials) {
@@ -108,7 +109,8 @@ TEST(Kernel, KnotsLieInsideAndMarkEveryJumpOfPiecewisePolynomials) {
         }
     // Fourth differences vanish, to rounding, within a piece of degree 3 or less, and across a knot they do not.
     const double h = 0x1p-10;
-    for (const Kernel& kernel : {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(), mitchell()}) {
+    for (const Kernel& kernel :
+         {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(), mitchell()}) {
         const auto fourth = [&](double x) {
             const auto& f = kernel.value;
             return f(x - 2 * h) - 4 * f(x - h) + 6 * f(x) - 4 * f(x + h) + f(x + 2 * h);

@@ -102,10 +102,12 @@ TEST(Parse, UnknownNamesListWhatIsKnown) {
 }
 
 TEST(Parse, ParametersMustBeCompleteNumbersInRange) {
-    for (const char* name : {"cubic:1", "cubic:1:2:3", "cubic:1:x", "cubic:1:", "cubic::1", "cubic:1,2", "cubic:nan:0",
-                             "cubic:0:inf", "sinc", "sinc:0", "sinc:-3", "sinc:4x", "gaussian", "gaussian:0", "kaiser:4",
-                             "kaiser:4:-1", "tent:1", "nearest:", "lanczos0", "lanczos-1", "lanczos3:1", "lanczos:3",
-                             "lanczos99999999999", "jinc0", "radial-lanczos0", "cubic: 1:1", "cubic:0x1:1"})
+    for (const char* name : {"cubic:1",     "cubic:1:2:3", "cubic:1:x",          "cubic:1:",   "cubic::1",
+                             "cubic:1,2",   "cubic:nan:0", "cubic:0:inf",        "sinc",       "sinc:0",
+                             "sinc:-3",     "sinc:4x",     "gaussian",           "gaussian:0", "kaiser:4",
+                             "kaiser:4:-1", "tent:1",      "nearest:",           "lanczos0",   "lanczos-1",
+                             "lanczos3:1",  "lanczos:3",   "lanczos99999999999", "jinc0",      "radial-lanczos0",
+                             "cubic: 1:1",  "cubic:0x1:1"})
         EXPECT_FALSE(error_of(name).empty()) << name;
 }
 

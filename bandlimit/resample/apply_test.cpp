@@ -63,7 +63,8 @@ const std::vector<NaiveRow>& rows_of(const Kernel& kernel, int n, int m, Edge ed
     return rows;
 }
 
-/// The columns of the same matrix. How many taps fold onto a sample is not known here: take all of the rows that read it.
+/// The columns of the same matrix. How many taps fold onto a sample is not known here: take all of the rows that read
+/// it.
 const std::vector<NaiveRow>& columns_of(const Kernel& kernel, int n, int m, Edge edge) {
     static std::map<std::tuple<std::string, int, int, Edge>, std::vector<NaiveRow>> known;
     std::vector<NaiveRow>& columns = known[{kernel.name, n, m, edge}];
@@ -95,7 +96,9 @@ struct Resampling {
             const Bank bank = make_bank(kernel, this->src(src.width), part, edge);
             apply(bank, cropped(src, 0, w.y, src.width, w.height), dst, parallel, antiring);
         };
-        op.reference = [*this](View<const float> src, int x, int y, int c) { return dot(row(src.width, x), src, y, c); };
+        op.reference = [*this](View<const float> src, int x, int y, int c) {
+            return dot(row(src.width, x), src, y, c);
+        };
         op.bound = [*this](View<const float> src, int x, int, int) {
             const NaiveRow& at = row(src.width, x);
             return dot_bound(at.taps, at.sum_abs * largest);
@@ -144,28 +147,31 @@ TEST(Apply, IsItsScalarDefinitionOnEveryInstructionSet) {
                 const Bank bank = make_bank(r.kernel, r.src(width), r.dst(width), r.edge);
                 Image<float> expected(bank.output_count(), height, channels);
                 apply_scalar(bank, src.view(), expected.view(), antiring);
+                const int n = width;
                 for_each_instruction_set([&](const std::string& name, bool fused) {
                     const Image<float> result = applied(bank, src.view(), antiring);
                     for_each(result.view(), [&](int x, int y, int c) {
-                        const double bound = fused ? 0 : 2 * dot_bound(r.row(width, x).taps + 3, 2 * largest);
+                        const double bound = fused ? 0 : 2 * dot_bound(r.row(n, x).taps + 3, 2 * largest);
                         ASSERT_NEAR(double(result.view()(x, y, c)), double(expected.view()(x, y, c)), bound)
-                            << name << ' ' << r.kernel.name << ' ' << width << ' ' << x << ' ' << y << ' ' << c;
+                            << name << ' ' << r.kernel.name << ' ' << n << ' ' << x << ' ' << y << ' ' << c;
                     });
                 });
             }
 }
 
 TEST(Apply, IdentityKeepsEveryBit) {
-    const std::vector<float> samples{-0.0f,           0.0f, infinity, 1.5f, nan_with_payload, -infinity, 1e-40f, -0.0f, infinity,
-                                     infinity,        3e38f, -3e38f, nan_with_payload, 0.1f};
-    for (const Kernel& kernel : {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), lanczos(2), lanczos(3)})
+    const std::vector<float> samples{-0.0f, 0.0f,     infinity, 1.5f,  nan_with_payload, -infinity,        1e-40f,
+                                     -0.0f, infinity, infinity, 3e38f, -3e38f,           nan_with_payload, 0.1f};
+    for (const Kernel& kernel :
+         {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), lanczos(2), lanczos(3)})
         for (const Edge edge : all_edges())
             for (const double antiring : {0.0, 0.5, 1.0}) {
                 const Image<float> src = row_of(samples);
                 const Axis axis{src.width(), 0.3, 9.1};
                 const Image<float> result = applied(make_bank(kernel, axis, axis, edge), src.view(), antiring);
                 for (int x = 0; x < src.width(); ++x)
-                    ASSERT_EQ(std::bit_cast<std::uint32_t>(result.view()(x, 0)), std::bit_cast<std::uint32_t>(src.view()(x, 0)))
+                    ASSERT_EQ(std::bit_cast<std::uint32_t>(result.view()(x, 0)),
+                              std::bit_cast<std::uint32_t>(src.view()(x, 0)))
                         << kernel.name << ' ' << name_of(edge) << ' ' << antiring << ' ' << x;
             }
 }
@@ -174,10 +180,12 @@ TEST(Apply, ConstantsSurvive) {
     for (const Resampling& r : resamplings()) {
         if (r.edge == Edge::zero) continue;
         for (int n = 1; n <= 40; ++n) {
-            const Image<float> result = applied(make_bank(r.kernel, r.src(n), r.dst(n), r.edge), row_of(std::vector(std::size_t(n), 3.0f)).view());
+            const Image<float> result = applied(make_bank(r.kernel, r.src(n), r.dst(n), r.edge),
+                                                row_of(std::vector(std::size_t(n), 3.0f)).view());
             for (int i = 0; i < result.width(); ++i) {
                 const NaiveRow& row = r.row(n, i);
-                ASSERT_NEAR(result.view()(i, 0), 3.0f, dot_bound(row.taps, 3 * row.sum_abs)) << r.kernel.name << n << ' ' << i;
+                ASSERT_NEAR(result.view()(i, 0), 3.0f, dot_bound(row.taps, 3 * row.sum_abs))
+                    << r.kernel.name << n << ' ' << i;
             }
         }
     }
@@ -188,7 +196,8 @@ TEST(Apply, SeparableIsTheDirectSumInTwoDimensions) {
     const Image<float> src = noise(7, 6, 2, 4);
     Image<float> middle = applied(make_bank(x.kernel, x.src(7), x.dst(7), x.edge), src.view());
     Image<float> result(middle.width(), 3, 2);
-    apply(make_bank(y.kernel, y.src(6), y.dst(6), y.edge), transposed(View<const float>(middle.view())), transposed(result.view()));
+    apply(make_bank(y.kernel, y.src(6), y.dst(6), y.edge), transposed(View<const float>(middle.view())),
+          transposed(result.view()));
     for_each(result.view(), [&](int i, int j, int c) {
         const NaiveRow &row_x = x.row(7, i), &row_y = y.row(6, j);
         double sum = 0;
@@ -213,7 +222,9 @@ TEST(Apply, NanReachesOnlyTheOutputsWhoseRowCoversIt) {
                         for (int j = 0; j < bank.row_info(x).count; ++j)
                             covers = covers || resolve(bank.first(x) + j, n, r.edge) == at;
                         if (y == 13 && c == 1 && covers) ASSERT_FALSE(std::isfinite(result.view()(x, y, c)));
-                        else ASSERT_EQ(result.view()(x, y, c), clean_result.view()(x, y, c)) << x << ' ' << y << ' ' << c;
+                        else
+                            ASSERT_EQ(result.view()(x, y, c), clean_result.view()(x, y, c))
+                                << x << ' ' << y << ' ' << c;
                     });
                 }
             }
@@ -228,7 +239,8 @@ TEST(Antiring, AStepDoesNotOvershoot) {
         for (int k = 0; k < 3; ++k) {
             const Image<float> result = applied(bank, row_of(step).view(), k / 2.0);
             for (int i = 0; i < m; ++i)
-                overshoot[k] = std::max({overshoot[k], double(result.view()(i, 0)) - 0.75, 0.25 - double(result.view()(i, 0))});
+                overshoot[k] =
+                    std::max({overshoot[k], double(result.view()(i, 0)) - 0.75, 0.25 - double(result.view()(i, 0))});
         }
         EXPECT_EQ(overshoot[2], 0) << m;
         if (m == n) continue;
@@ -243,7 +255,9 @@ TEST(Antiring, OneStaysWithinTheNearestSamples) {
             const Bank bank = make_bank(r.kernel, r.src(n), r.dst(n), r.edge);
             Image<float> src = noise(n, 7, 1, 9);
             // Values of very different size: the limit must hold to the last bit.
-            for_each(src.view(), [&](int x, int y, int) { src.view()(x, y) = std::ldexp(src.view()(x, y), (x * 7 + y * 5) % 40 - 30); });
+            for_each(src.view(), [&](int x, int y, int) {
+                src.view()(x, y) = std::ldexp(src.view()(x, y), (x * 7 + y * 5) % 40 - 30);
+            });
             const Image<float> result = applied(bank, src.view(), 1);
             for_each(result.view(), [&](int i, int y, int) {
                 const Bank::Row& row = bank.row_info(i);
@@ -260,7 +274,8 @@ TEST(Antiring, OneStaysWithinTheNearestSamples) {
 
 TEST(Antiring, LeavesWhatDoesNotOvershootAlone) {
     const Image<float> src = noise(30, 5, 2, 10);
-    const Bank bank = make_bank(bspline(), Axis{30}, Axis{71}, Edge::clamp);  // of positive weights, mostly within range
+    const Bank bank =
+        make_bank(bspline(), Axis{30}, Axis{71}, Edge::clamp);  // of positive weights, mostly within range
     const Image<float> without = applied(bank, src.view()), with = applied(bank, src.view(), 1);
     int same = 0;
     for_each(with.view(), [&](int x, int y, int c) {
@@ -300,13 +315,19 @@ TEST(Adjoint, PassesTheOperatorChecker) {
         op.run = [=](View<const float> src, View<float> dst, Window w, Parallel parallel) {
             const auto [from, to] = axes(src.width);
             Image<float> whole(from.count, w.height, src.channels);
-            apply_adjoint(make_bank(r.kernel, from, to, r.edge), cropped(src, 0, w.y, src.width, w.height), whole.view(), parallel);
+            apply_adjoint(make_bank(r.kernel, from, to, r.edge), cropped(src, 0, w.y, src.width, w.height),
+                          whole.view(), parallel);
             if (w.width == from.count)  // all of it: as the caller wants it
-                return apply_adjoint(make_bank(r.kernel, from, to, r.edge), cropped(src, 0, w.y, src.width, w.height), dst, parallel);
+                return apply_adjoint(make_bank(r.kernel, from, to, r.edge), cropped(src, 0, w.y, src.width, w.height),
+                                     dst, parallel);
             for_each(dst, [&](int x, int y, int c) { dst(x, y, c) = whole.view()(w.x + x, y, c); });
         };
-        const auto columns = [=](int m) -> const std::vector<NaiveRow>& { return columns_of(r.kernel, inputs(m), m, r.edge); };
-        op.reference = [=](View<const float> src, int x, int y, int c) { return dot(columns(src.width)[std::size_t(x)], src, y, c); };
+        const auto columns = [=](int m) -> const std::vector<NaiveRow>& {
+            return columns_of(r.kernel, inputs(m), m, r.edge);
+        };
+        op.reference = [=](View<const float> src, int x, int y, int c) {
+            return dot(columns(src.width)[std::size_t(x)], src, y, c);
+        };
         op.bound = [=](View<const float> src, int x, int, int) {
             const NaiveRow& at = columns(src.width)[std::size_t(x)];
             return dot_bound(at.taps, at.sum_abs * largest);
@@ -330,7 +351,8 @@ TEST(Adjoint, MovesTheBankAcrossTheInnerProduct) {
                 const NaiveRow& row = r.row(n, x);
                 bound += 2 * dot_bound(row.taps + bank.output_count(), row.sum_abs * largest * largest);
             });
-            for_each(u.view(), [&](int x, int y, int c) { right += double(u.view()(x, y, c)) * double(av.view()(x, y, c)); });
+            for_each(u.view(),
+                     [&](int x, int y, int c) { right += double(u.view()(x, y, c)) * double(av.view()(x, y, c)); });
             ASSERT_NEAR(left, right, bound) << r.kernel.name << ' ' << n;
         }
 }

@@ -31,8 +31,8 @@ double overlap(double a0, double a1, double b0, double b1) {
     return std::max(0.0, std::min(a1, b1) - std::max(a0, b0));
 }
 
-/// Sample s sees the kernel at (s * units - offset) / span. These are integers where sizes are: what lies on a jump of the
-/// kernel, or halfway, lies there exactly, and mirrored outputs have mirrored weights.
+/// Sample s sees the kernel at (s * units - offset) / span. These are integers where sizes are: what lies on a jump of
+/// the kernel, or halfway, lies there exactly, and mirrored outputs have mirrored weights.
 struct Footing {
     double offset, units, span;
 };

@@ -24,8 +24,8 @@ std::vector<Kernel> separable_kernels() {
 }
 
 std::vector<Kernel> interpolating_kernels() {
-    return {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), lanczos(1), lanczos(2), lanczos(3),
-            truncated_sinc(4), kaiser(4, 6)};
+    return {nearest(),  box(),      tent(),     quadratic_interpolating(), catmull_rom(),
+            lanczos(1), lanczos(2), lanczos(3), truncated_sinc(4),         kaiser(4, 6)};
 }
 
 double sum_of(std::span<const float> row) { return std::accumulate(row.begin(), row.end(), 0.0); }
@@ -168,7 +168,8 @@ TEST(Bank, PartsHoldTheBitsOfTheWhole) {
     Random random(3);
     for (int round = 0; round < 600; ++round) {
         const int n = random.integer(1, round % 3 == 0 ? 5000 : 60), m = random.integer(1, round % 2 == 0 ? 5000 : 60);
-        const Kernel kernel = std::vector{lanczos(3), box(), mitchell(), tent(), nearest(), gaussian(0.7)}[std::size_t(round % 6)];
+        const Kernel kernel =
+            std::vector{lanczos(3), box(), mitchell(), tent(), nearest(), gaussian(0.7)}[std::size_t(round % 6)];
         const Edge edge = all_edges()[std::size_t(random.integer(0, 4))];
         // The same pair of intervals in cells, in normalised coordinates, and in some odd unit.
         const double begin = std::vector{0.0, 0.0, -0.3}[std::size_t(round % 3)];
@@ -177,7 +178,8 @@ TEST(Bank, PartsHoldTheBitsOfTheWhole) {
         const Bank whole = make_bank(kernel, src, dst, edge);
         for (int k = 0; k < 6; ++k) {
             const int first = random.integer(0, m - 1), last = k == 0 ? first + 1 : random.integer(first + 1, m);
-            const std::string what = message(kernel.name, ' ', n, " to ", m, ", cells ", first, " to ", last, ", round ", round);
+            const std::string what =
+                message(kernel.name, ' ', n, " to ", m, ", cells ", first, " to ", last, ", round ", round);
             ASSERT_NO_FATAL_FAILURE(
                 expect_same_rows(whole, first, make_bank(kernel, src, dst.cells(first, last), edge), what));
         }
@@ -193,8 +195,8 @@ TEST(Bank, PartsOfARegionHoldTheBitsOfTheRegion) {
         const Bank whole = make_bank(lanczos(3), src, dst, Edge::renormalize);
         const int first = random.integer(0, m - 1), last = random.integer(first + 1, m);
         const std::string what = message(n, " to ", m, ", region ", x, " + ", width, ", cells ", first, " to ", last);
-        ASSERT_NO_FATAL_FAILURE(
-            expect_same_rows(whole, first, make_bank(lanczos(3), src, dst.cells(first, last), Edge::renormalize), what));
+        ASSERT_NO_FATAL_FAILURE(expect_same_rows(
+            whole, first, make_bank(lanczos(3), src, dst.cells(first, last), Edge::renormalize), what));
     }
 }
 
@@ -208,11 +210,14 @@ TEST(Bank, AFlippedTargetHoldsTheRowsBackwards) {
                     const Bank target = make_bank(kernel, Axis{n}, Axis{m, 1, 0}, edge);
                     const Bank source = make_bank(kernel, Axis{n, 1, 0}, Axis{m}, edge);
                     for (int i = 0; i < m; ++i) {
-                        const std::vector<double> a = dense(forward, i), b = dense(target, m - 1 - i), c = dense(source, i);
+                        const std::vector<double> a = dense(forward, i), b = dense(target, m - 1 - i),
+                                                  c = dense(source, i);
                         // Each side carries the roundings of a row; sum |w| is below 2.
                         for (int x = 0; x < n; ++x) {
-                            ASSERT_NEAR(a[std::size_t(x)], b[std::size_t(x)], 8 * 0x1p-24) << kernel.name << n << ' ' << m;
-                            ASSERT_NEAR(a[std::size_t(x)], c[std::size_t(n - 1 - x)], 8 * 0x1p-24) << kernel.name << n << ' ' << m;
+                            ASSERT_NEAR(a[std::size_t(x)], b[std::size_t(x)], 8 * 0x1p-24)
+                                << kernel.name << n << ' ' << m;
+                            ASSERT_NEAR(a[std::size_t(x)], c[std::size_t(n - 1 - x)], 8 * 0x1p-24)
+                                << kernel.name << n << ' ' << m;
                         }
                     }
                 }
@@ -247,7 +252,8 @@ TEST(Bank, ARampStaysARamp) {
         const Bank twice = make_bank(kernel, Axis{32}, Axis{64}, Edge::clamp);
         const auto mean = [](const Bank& bank, int i) {
             double sum = 0;
-            for (std::size_t j = 0; j < bank.row(i).size(); ++j) sum += (bank.first(i) + double(j)) * double(bank.row(i)[j]);
+            for (std::size_t j = 0; j < bank.row(i).size(); ++j)
+                sum += (bank.first(i) + double(j)) * double(bank.row(i)[j]);
             return sum;
         };
         // Rounded weights at positions up to 35.
@@ -330,7 +336,8 @@ TEST(Bank, RefusesWhatHasNoMeaning) {
         EXPECT_THROW(make_bank(tent(), bad, Axis{3}, Edge::clamp), Error);
         EXPECT_THROW(make_bank(tent(), Axis{3}, bad, Edge::clamp), Error);
     }
-    EXPECT_NE(error_of([] { make_bank(jinc_lanczos(3), Axis{3}, Axis{3}, Edge::clamp); }).find("radial"), std::string::npos);
+    EXPECT_NE(error_of([] { make_bank(jinc_lanczos(3), Axis{3}, Axis{3}, Edge::clamp); }).find("radial"),
+              std::string::npos);
     EXPECT_THROW(make_bank(tent(), Axis{3}, Axis{3, 5, 6}, Edge::zero), Error) << "nothing inside";
     EXPECT_THROW(make_bank(tent(), Axis{3}, Axis{3, 5, 6}, Edge::renormalize), Error);
     EXPECT_NO_THROW(make_bank(tent(), Axis{3}, Axis{3, 5, 6}, Edge::clamp));
@@ -343,7 +350,8 @@ TEST(PhaseWeights, KnownNumbers) {
         const PhaseWeights at = weights_at(kernel, phase);
         EXPECT_EQ(at.taps.first, first) << kernel.name;
         ASSERT_EQ(at.taps.weights.size(), weights.size()) << kernel.name;
-        for (std::size_t j = 0; j < weights.size(); ++j) EXPECT_NEAR(at.taps.weights[j], weights[j], 1e-15) << kernel.name;
+        for (std::size_t j = 0; j < weights.size(); ++j)
+            EXPECT_NEAR(at.taps.weights[j], weights[j], 1e-15) << kernel.name;
     };
     expect(lanczos(2), 0.5, -1, {-1 / 16., 9 / 16., 9 / 16., -1 / 16.});
     expect(lanczos(3), 0, 0, {1});

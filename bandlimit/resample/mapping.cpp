@@ -14,8 +14,8 @@ struct Ratio {
     std::int64_t p = 0, q = 0;
 };
 
-/// The relative error of the pitch of an axis, and the error of its begin in pitches, if both ends carry a few roundings,
-/// as those of a part of another axis do.
+/// The relative error of the pitch of an axis, and the error of its begin in pitches, if both ends carry a few
+/// roundings, as those of a part of another axis do.
 double uncertainty(const Axis& axis) {
     constexpr double roundings = 16 * 0x1p-53;
     return roundings * (1 + (std::abs(axis.begin) + std::abs(axis.end)) / std::abs(axis.end - axis.begin));

@@ -63,7 +63,8 @@ inline NaiveRow naive_row(const Kernel& kernel, const Axis& src, const Axis& dst
 /// The weighted sum of a row of samples, and of their magnitudes.
 inline double dot(const NaiveRow& row, View<const float> src, int y, int c) {
     double sum = 0;
-    for (int x = 0; x < src.width; ++x) sum += row.weights[static_cast<std::size_t>(x)] * static_cast<double>(src(x, y, c));
+    for (int x = 0; x < src.width; ++x)
+        sum += row.weights[static_cast<std::size_t>(x)] * static_cast<double>(src(x, y, c));
     return sum;
 }
 

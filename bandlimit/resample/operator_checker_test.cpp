@@ -50,7 +50,9 @@ TEST(OperatorChecker, PassesWhatIsRight) {
                    },
                    [](View<const float> src, int x, int y, int c) { return double(src(2 * x, y, c)); },
                    [](View<const float>, int, int, int) { return 0.0; },
-                   [](Size size) { return Size{(size.width + 1) / 2, size.height}; }};
+                   [](Size size) {
+                       return Size{(size.width + 1) / 2, size.height};
+                   }};
     EXPECT_TRUE(check_operator(halve));
 }
 
@@ -83,11 +85,10 @@ const Broken broken_operators[] = {
     {"writes behind the end",
      blur_and([](auto, View<float> dst, Window, Parallel) { dst(dst.width, dst.height - 1, dst.channels - 1) = 0; }),
      "written outside"},
-    {"writes before the begin", blur_and([](auto, View<float> dst, Window, Parallel) { dst(-1, 0) = 0; }), "written outside"},
-    {"writes into the padding of rows",
-     blur_and([](auto, View<float> dst, Window, Parallel) {
-         if (dst.dc == 1 && dst.dx == dst.channels && dst.dy > dst.width * dst.dx)
-             dst.data[dst.width * dst.dx] = 0;
+    {"writes before the begin", blur_and([](auto, View<float> dst, Window, Parallel) { dst(-1, 0) = 0; }),
+     "written outside"},
+    {"writes into the padding of rows", blur_and([](auto, View<float> dst, Window, Parallel) {
+         if (dst.dc == 1 && dst.dx == dst.channels && dst.dy > dst.width * dst.dx) dst.data[dst.width * dst.dx] = 0;
      }),
      "written outside"},
     {"leaves a sample of wide rows unwritten",
@@ -142,7 +143,8 @@ const Broken broken_operators[] = {
          dst(0, 0) += 0 * src.data[-1];
      },
      "the reference"},
-    {"is off by one in a window", [](View<const float> src, View<float> dst, Window window, Parallel parallel) {
+    {"is off by one in a window",
+     [](View<const float> src, View<float> dst, Window window, Parallel parallel) {
          if (window.x > 0) window.x -= 1;
          blur(src, dst, window, parallel);
      },
@@ -162,9 +164,8 @@ const Broken broken_operators[] = {
          if (dst.channels == 4) dst(0, 0, 3) += 1;
      }),
      "allowed"},
-    {"makes a NaN", blur_and([](auto, View<float> dst, Window, Parallel) {
-         dst(0, 0) = std::numeric_limits<float>::quiet_NaN();
-     }),
+    {"makes a NaN",
+     blur_and([](auto, View<float> dst, Window, Parallel) { dst(0, 0) = std::numeric_limits<float>::quiet_NaN(); }),
      "allowed"},
     {"sums in another order where samples lie side by side",
      [](View<const float> src, View<float> dst, Window window, Parallel parallel) {
@@ -172,7 +173,8 @@ const Broken broken_operators[] = {
          if (dst.dc != 1) return;
          for (int x = 0; x < dst.width; ++x) {
              const int at = window.x + x;
-             const float left = src(std::max(at - 1, 0), window.y), right = src(std::min(at + 1, src.width - 1), window.y);
+             const float left = src(std::max(at - 1, 0), window.y),
+                         right = src(std::min(at + 1, src.width - 1), window.y);
              dst(x, 0) = 0.25f * left + (0.5f * src(at, window.y) + 0.25f * right);
          }
      },

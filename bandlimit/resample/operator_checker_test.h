@@ -65,7 +65,6 @@ inline void for_each_instruction_set(const std::function<void(const std::string&
 
 namespace checker {
 
-
 /// NaNs that no arithmetic makes: what an output holds before it is written, and what lies around every sample.
 inline const float marker = std::bit_cast<float>(0x7fc0beefu), guard = std::bit_cast<float>(0x7fc0deadu);
 
@@ -101,7 +100,12 @@ public:
         const std::ptrdiff_t line = columns * pixel + memory.padding, plane = rows * line;
         const std::ptrdiff_t all = memory.interleaved ? plane : plane * channels;
         block_.assign(static_cast<std::size_t>(all + 2 * margin), guard);
-        view_ = {block_.data() + margin, static_cast<int>(columns), static_cast<int>(rows), channels, pixel, line,
+        view_ = {block_.data() + margin,
+                 static_cast<int>(columns),
+                 static_cast<int>(rows),
+                 channels,
+                 pixel,
+                 line,
                  memory.interleaved ? memory.spread : plane};
         if (memory.flipped) view_ = flipped_x(flipped_y(view_));
         if (t) view_ = bandlimit::transposed(view_);
@@ -174,9 +178,7 @@ public:
     }
 
 private:
-    std::string where() const {
-        return message("input ", size_.width, " x ", size_.height, " x ", channels_, ": ");
-    }
+    std::string where() const { return message("input ", size_.width, " x ", size_.height, " x ", channels_, ": "); }
 
     Guarded placed_input(const Memory& memory) const {
         Guarded input(memory, size_, channels_);
@@ -190,8 +192,8 @@ private:
         const Guarded input = placed_input(from);
         const std::vector<std::uint32_t> before = input.memory_bits();
         result.emplace(to, Size{window.width, window.height}, channels_);
-        const std::string how = message(where(), from.name, " to ", to.name, ", ", threads, " threads, window ", window.x,
-                                        ' ', window.y, ' ', window.width, ' ', window.height, ": ");
+        const std::string how = message(where(), from.name, " to ", to.name, ", ", threads, " threads, window ",
+                                        window.x, ' ', window.y, ' ', window.width, ' ', window.height, ": ");
         op_.run(input.view(), result->view(), window, {threads});
         if (input.memory_bits() != before) return how + "the input was changed";
         if (!result->surroundings_are_whole()) return how + "written outside the output";
@@ -217,14 +219,15 @@ private:
                     const double value = expected_.view()(x, y, c), reference = op_.reference(in, x, y, c);
                     const double bound = op_.bound(in, x, y, c);
                     if (!(std::abs(value - reference) <= bound))
-                        return message(where(), "output ", x, ' ', y, ' ', c, " is ", value, ", the reference ", reference,
-                                       "; off by ", std::abs(value - reference), ", allowed ", bound);
+                        return message(where(), "output ", x, ' ', y, ' ', c, " is ", value, ", the reference ",
+                                       reference, "; off by ", std::abs(value - reference), ", allowed ", bound);
                 }
         return {};
     }
 
     /// Runs in some way and compares the bits with the plain run.
-    std::optional<std::string> problem_of(const Memory& from, const Memory& to, const Window& window, int threads) const {
+    std::optional<std::string> problem_of(const Memory& from, const Memory& to, const Window& window,
+                                          int threads) const {
         std::optional<Guarded> result;
         if (auto p = run(from, to, window, threads, result)) return p;
         std::optional<std::string> problem;
@@ -260,7 +263,8 @@ private:
     std::vector<Window> windows() const {
         const int w = output_size_.width, h = output_size_.height;
         std::vector<Window> all;
-        for (const auto& [x0, x1] : {std::pair{0, (w + 1) / 2}, {w / 2, w}, {w / 3, std::max(w / 3 + 1, w - w / 3)}, {w - 1, w}})
+        for (const auto& [x0, x1] :
+             {std::pair{0, (w + 1) / 2}, {w / 2, w}, {w / 3, std::max(w / 3 + 1, w - w / 3)}, {w - 1, w}})
             for (const auto& [y0, y1] : {std::pair{0, h}, {h / 2, h}, {h / 3, h / 3 + 1}})
                 all.push_back({x0, y0, x1 - x0, y1 - y0});
         return all;

@@ -28,7 +28,8 @@ struct Resizing {
     int x_numerator, x_denominator, y_numerator, y_denominator;
 
     Size output(Size s) const {
-        return {std::max(1, s.width * x_numerator / x_denominator), std::max(1, s.height * y_numerator / y_denominator)};
+        return {std::max(1, s.width * x_numerator / x_denominator),
+                std::max(1, s.height * y_numerator / y_denominator)};
     }
     Grid src(Size s) const { return {{s.width, 0, double(s.width)}, {s.height, 0, double(s.height)}}; }
     Grid dst(Size s) const {
@@ -56,7 +57,8 @@ const std::vector<NaiveRow>& rows_of(const Kernel& kernel, int n, int m, Edge ed
 }
 
 /// Runs a part of the output as a resizing of its own, from a view of floats to a view of floats.
-void run_part(const Resizing& r, View<const float> src, View<float> dst, Window w, Parallel parallel, const ResizeOptions& options) {
+void run_part(const Resizing& r, View<const float> src, View<float> dst, Window w, Parallel parallel,
+              const ResizeOptions& options) {
     Grid grid = r.dst(size_of(src));
     grid.x = grid.x.cells(w.x, w.x + w.width);
     grid.y = grid.y.cells(w.y, w.y + w.height);
@@ -79,7 +81,8 @@ TEST(Resizer, PassesTheOperatorChecker) {
         op.reference = [=](View<const float> src, int x, int y, int c) {
             double sum = 0;
             for (int v = 0; v < src.height; ++v)
-                if (const double w = row_y(src, y).weights[std::size_t(v)]; w != 0) sum += w * dot(row_x(src, x), src, v, c);
+                if (const double w = row_y(src, y).weights[std::size_t(v)]; w != 0)
+                    sum += w * dot(row_x(src, x), src, v, c);
             return sum;
         };
         op.bound = [=](View<const float> src, int x, int y, int) {
@@ -91,7 +94,8 @@ TEST(Resizer, PassesTheOperatorChecker) {
 }
 
 TEST(Resizer, OfARadialKernelPassesTheOperatorChecker) {
-    for (const Resizing& r : {Resizing{jinc_lanczos(2), Edge::reflect, 2, 3, 2, 3}, {jinc_lanczos(2), Edge::renormalize, 2, 1, 2, 1}}) {
+    for (const Resizing& r :
+         {Resizing{jinc_lanczos(2), Edge::reflect, 2, 3, 2, 3}, {jinc_lanczos(2), Edge::renormalize, 2, 1, 2, 1}}) {
         /// The weights of the disc, straight from the kernel.
         const auto for_each_weight = [r](View<const float> src, int x, int y, auto visit) {
             const Size size = size_of(src);
@@ -132,7 +136,8 @@ TEST(Resizer, OfARadialKernelPassesTheOperatorChecker) {
 Image<float> noise(int width, int height, int channels, std::uint64_t seed) {
     Image<float> image(width, height, channels, Layout::interleaved);
     Random random(seed);
-    for (int i = 0; i < width * height * channels; ++i) image.view().data[i] = static_cast<float>(random.uniform(-0.1, 1.1));
+    for (int i = 0; i < width * height * channels; ++i)
+        image.view().data[i] = static_cast<float>(random.uniform(-0.1, 1.1));
     return image;
 }
 
@@ -141,7 +146,8 @@ void expect_same(View<const T> a, View<const T> b, const std::string& what) {
     ASSERT_TRUE(same_shape(a, b));
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x)
-            for (int c = 0; c < a.channels; ++c) ASSERT_EQ(a(x, y, c), b(x, y, c)) << what << ' ' << x << ' ' << y << ' ' << c;
+            for (int c = 0; c < a.channels; ++c)
+                ASSERT_EQ(a(x, y, c), b(x, y, c)) << what << ' ' << x << ' ' << y << ' ' << c;
 }
 
 TEST(Resizer, BlocksOfRowsGiveTheBitsOfTheWhole) {
@@ -181,7 +187,8 @@ void expect_codes_of_the_float_result(const Encoding& encoding) {
     const Resizer resizer({{23}, {17}}, {{11}, {30}}, 4, {.reconstruction = catmull_rom()});
     // By way of floats: decode, resize what is linear and premultiplied, encode.
     Image<float> linear(23, 17, 4, Layout::interleaved), result(11, 30, 4, Layout::interleaved);
-    for (int y = 0; y < 17; ++y) decode_row(View<const From>(src.view()), y, encoding, true, {&linear.view()(0, y), 23 * 4});
+    for (int y = 0; y < 17; ++y)
+        decode_row(View<const From>(src.view()), y, encoding, true, {&linear.view()(0, y), 23 * 4});
     resizer.run({View<const float>(linear.view()), 0, {}}, {result.view(), 0, {}, {}});
     Image<To> expected(11, 30, 4, Layout::interleaved), direct(11, 30, 4, Layout::interleaved);
     for (int y = 0; y < 30; ++y) encode_row({&result.view()(0, y), 11 * 4}, true, expected.view(), y, encoding);
@@ -192,7 +199,8 @@ void expect_codes_of_the_float_result(const Encoding& encoding) {
 }
 
 TEST(Resizer, CodesAreThoseOfTheFloatResult) {
-    for (const Encoding& encoding : {Encoding{Transfer::srgb, 3}, {Transfer::linear, 3}, {Transfer::srgb, -1}, {Transfer::linear, 3, true}}) {
+    for (const Encoding& encoding :
+         {Encoding{Transfer::srgb, 3}, {Transfer::linear, 3}, {Transfer::srgb, -1}, {Transfer::linear, 3, true}}) {
         expect_codes_of_the_float_result<std::uint8_t, std::uint8_t>(encoding);
         expect_codes_of_the_float_result<std::uint16_t, std::uint8_t>(encoding);
         expect_codes_of_the_float_result<std::uint16_t, std::uint16_t>(encoding);
@@ -270,9 +278,11 @@ TEST(Resizer, RefusesWhatDoesNotFit) {
 TEST(Resample, IsTheResizerOnWholeImages) {
     const Image<float> src = noise(9, 7, 2, 5);
     Image<float> expected(20, 3, 2);
-    Resizer({{9}, {7}}, {{20}, {3}}, 2, {.reconstruction = tent()}).run({src.view(), 0, {}}, {expected.view(), 0, {}, {}});
+    Resizer({{9}, {7}}, {{20}, {3}}, 2, {.reconstruction = tent()})
+        .run({src.view(), 0, {}}, {expected.view(), 0, {}, {}});
     for (const Layout layout : {Layout::planar, Layout::interleaved})
-        expect_same<float>(std::as_const(expected).view(), resample(src.view(), 20, 3, {.reconstruction = tent()}, {}, layout).view(), "");
+        expect_same<float>(std::as_const(expected).view(),
+                           resample(src.view(), 20, 3, {.reconstruction = tent()}, {}, layout).view(), "");
 }
 
 }  // namespace

@@ -1,0 +1,181 @@
+// The command line as such: usage, help, examples, streams.
+#include <array>
+
+#include "apps/run_program_test.h"
+
+namespace bandlimit {
+namespace {
+
+const std::array verbs{"resize", "pattern", "compare", "analyze", "info", "tour"};
+const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
+                       "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
+
+/// A folder in which examples work as pasted.
+void add_examples(const Shell& shell) {
+    std::filesystem::copy(BANDLIMIT_EXAMPLES, shell / "examples", std::filesystem::copy_options::recursive);
+}
+
+TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_examples(shell);
+    const std::string resize = "resize examples/coffee.png out.png ", pattern = "pattern checker out.png --size 8x8 ";
+    const std::string compare = "compare examples/coffee.png examples/coffee.png ";
+    struct Case {
+        std::string line, word;
+    };
+    for (const auto& [line, word] : {
+             Case{"", "resize, pattern, compare, analyze, info, tour"},
+             {"frob", "\"frob\" is no verb"},
+             {"--bogus " + resize + "--scale 1", "--bogus"},
+             {"resize", "IN"},
+             {"resize in.png", "OUT"},
+             {resize, "--size"},
+             {resize + "--size 8x8 --scale 1", "one of"},
+             {resize + "--size 8x8 --width 8", "one of"},
+             {resize + "--size 0x0", "0x0"},
+             {resize + "--size 8x", "8x"},
+             {resize + "--size -8x8", "-8x8"},
+             {resize + "--size 99999999999x1", "99999999999x1"},
+             {resize + "--width 0", "--width"},
+             {resize + "--height -3", "--height"},
+             {resize + "--scale 0", "--scale"},
+             {resize + "--scale -1", "--scale"},
+             {resize + "--scale nan", "--scale"},
+             {resize + "--scale inf", "--scale"},
+             {resize + "--scale 1/0", "--scale"},
+             {resize + "--scale 1e30", "2147483647"},
+             {resize + "--scale 1 --kernel bicubic", "bspline, catmull-rom, mitchell or cubic:B:C"},
+             {resize + "--scale 1 --kernel none", "nearest, box, tent, quadratic"},
+             {resize + "--scale 1 --kernel lanczos0", "lanczos"},
+             {resize + "--scale 1 --edge mirror", "clamp, reflect, wrap, zero or renormalize"},
+             {resize + "--scale 1 --align middle", "corners or centers"},
+             {resize + "--scale 1 --space rgb", "auto, srgb, linear or data"},
+             {resize + "--scale 1 --alpha none", "premultiply or straight"},
+             {resize + "--scale 1 --depth u32", "u8, u16, f16 or f32"},
+             {resize + "--scale 1 --depth f16", "u16"},
+             {resize + "--scale 1 --antiring 1.5", "--antiring"},
+             {resize + "--scale 1 --antiring nan", "--antiring"},
+             {resize + "--scale 1 --threads -1", "--threads"},
+             {resize + "--scale 1 --region 1,2,3", "--region"},
+             {resize + "--scale 1 --region 1,2,0,5", "--region"},
+             {resize + "--scale 1 more", "more"},
+             {resize + "--scale 1 --bogus", "--bogus"},
+             {"resize examples/coffee.png out.xyz --scale 1", "png, jpg, tif, exr"},
+             {"resize examples/coffee.png out --scale 1", "png, jpg, tif, exr"},
+             {"pattern", "zoneplate"},
+             {"pattern moire out.png --size 8x8", "\"moire\" is no kind of signal"},
+             {"pattern --bogus checker out.png --size 8x8", "--bogus"},
+             {"pattern checker out.png", "--size"},
+             {pattern + "--cell 0", "checkerboard"},
+             {pattern + "--antialias bicubic", "mitchell"},
+             {pattern + "--samples 0", "--samples"},
+             {pattern + "--spokes 5", "--spokes"},
+             {"pattern siemens out.png --size 8x8 --antialias exact", "siemens"},
+             {"pattern siemens out.png --size 8x8 --spokes 0", "spokes"},
+             {"pattern noise out.png --size 8x8 --antialias exact", "noise"},
+             {"pattern noise out.png --size 8x8 --seed -1", "--seed"},
+             {"pattern checker out.jpg --size 8x8 --depth u16", "u8"},
+             {"compare one.png", "B"},
+             {compare + "--border -1", "--border"},
+             {compare + "--measure codes", "encoded or linear"},
+             {compare + "--diff out.xyz", "png, jpg, tif, exr"},
+             {"analyze", "--list"},
+             {"analyze none", "nearest, box, tent, quadratic"},
+             {"analyze bicubic", "mitchell"},
+             {"analyze gaussian:0", "sigma"},
+             {"analyze tent --phase 1", "--phase"},
+             {"analyze tent --phase x", "--phase"},
+             {"analyze tent --at 1,,2", "--at"},
+             {"analyze tent --frequency 1e308", "--frequency"},
+             {"analyze tent --from 4", "--to"},
+             {"analyze tent --from 0 --to 4", "--from"},
+             {"analyze tent --from 4 --to 2 --rows 2", "--rows"},
+             {"analyze tent --rows 0", "--rows"},
+             {"analyze jinc2 --from 4 --to 2", "radial"},
+             {"analyze tent --plot out.bmp", ".svg or .png"},
+             {"info", "FILE"},
+             {"tour", "DIR"},
+         })
+        EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;
+    EXPECT_EQ(shell.files(), std::set<std::string>{"examples"});
+}
+
+TEST(CommandLine, VersionAndHelp) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome version = shell("--version");
+    ASSERT_TRUE(succeeds(version));
+    EXPECT_TRUE(version.out.starts_with("bandlimit ")) << version;
+    EXPECT_EQ(std::count(version.out.begin(), version.out.end(), '\n'), 1);
+    const Outcome help = shell("--help");
+    ASSERT_TRUE(succeeds(help));
+    for (const std::string verb : verbs) EXPECT_NE(help.out.find(verb), std::string::npos) << verb;
+    EXPECT_NE(shell("resize --help").out.find("align_corners"), std::string::npos);
+    EXPECT_TRUE(shell.files().empty());
+}
+
+/// The command that help ends with, without the program's name.
+std::string example_of(const Outcome& help) {
+    const std::string mark = "Example:\n  bandlimit ";
+    const auto begin = help.out.find(mark);
+    if (begin == std::string::npos) return "";
+    const std::string rest = help.out.substr(begin + mark.size());
+    return rest.substr(0, rest.find('\n'));
+}
+
+TEST(CommandLine, TheExampleOfEveryHelpWorksAsPasted) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_examples(shell);
+    std::vector<std::string> commands(verbs.begin(), verbs.end());
+    std::erase(commands, "tour");  // has a test of its own: it takes longest
+    for (const std::string kind : kinds) commands.push_back("pattern " + kind);
+    for (const std::string& command : commands) {
+        const Outcome help = shell(command + " --help");
+        ASSERT_TRUE(succeeds(help)) << command;
+        const std::string example = example_of(help);
+        ASSERT_TRUE(example.starts_with(command)) << help;
+        EXPECT_TRUE(succeeds(shell(example))) << example;
+    }
+    EXPECT_EQ(shell.files().count("half.png") + shell.files().count("bspline.svg"), 2u);
+}
+
+TEST(CommandLine, TheTourIsAPageWithItsPictures) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome help = shell("tour --help");
+    ASSERT_EQ(example_of(help), "tour out");
+    const Outcome tour = shell("tour out");
+    ASSERT_TRUE(succeeds(tour));
+    EXPECT_NE(tour.out.find("out/index.html"), std::string::npos) << tour;
+    const std::string page = bytes_of(shell / "out/index.html");
+    int pictures = 0;
+    for (auto at = page.find("src=\""); at != std::string::npos; at = page.find("src=\"", at + 1)) {
+        const std::string name = page.substr(at + 5, page.find('"', at + 5) - at - 5);
+        EXPECT_TRUE(std::filesystem::exists(shell / ("out/" + name))) << name;
+        ++pictures;
+    }
+    EXPECT_GT(pictures, 10);
+    EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // self-contained
+    EXPECT_EQ(shell.files(), std::set<std::string>{"out"});
+    for (const auto& entry : std::filesystem::directory_iterator(shell / "out"))
+        EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+}
+
+TEST(CommandLine, AReportThatCannotBeWrittenIsExitCode1) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_examples(shell);
+    for (const std::string line : {"resize examples/gravel.png out.png --scale 0.5 --json", "info examples/coffee.png --json",
+                                   "compare examples/gravel.png examples/gravel.png --json", "analyze tent --json",
+                                   "analyze --list", "pattern box out.png --size 8x8 --json", "--version", "resize --help"}) {
+        EXPECT_TRUE(fails(1, shell(line, {.out_to = "/dev/full"}), "stdout")) << line;
+        EXPECT_TRUE(fails(1, shell(line, {.has_no_stdout = true}), "stdout")) << line;
+    }
+}
+
+TEST(CommandLine, ClosedStreamsDoNotReachFiles) {
+    // The first file that is opened must not take the place of stdout.
+    const Shell shell(BANDLIMIT_PROGRAM);
+    EXPECT_EQ(shell("pattern box out.png --size 8x8", {.has_no_stdout = true}).code, 0);
+    EXPECT_EQ(read_image(shell / "out.png").index(), std::size_t(Depth::u8));
+}
+
+}  // namespace
+}  // namespace bandlimit

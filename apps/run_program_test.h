@@ -1,0 +1,188 @@
+// How the tests meet the program: from outside, in a folder of their own.
+#pragma once
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "bandlimit/io/files_test.h"
+
+namespace bandlimit {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool is_sanitized = true;
+#elif defined(__has_feature)
+inline constexpr bool is_sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+inline constexpr bool is_sanitized = false;
+#endif
+
+/// What became of a run.
+struct Outcome {
+    int code = -1;   ///< exit code; -1 after a signal
+    int signal = 0;  ///< that ended it
+    std::string out, err;
+    double seconds = 0;
+
+    nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+inline std::ostream& operator<<(std::ostream& to, const Outcome& o) {
+    return to << "code " << o.code << ", signal " << o.signal << ", stdout \"" << o.out.substr(0, 500) << "\", stderr \""
+              << o.err.substr(0, 3000) << "\"";
+}
+
+/// What is unusual about a run.
+struct Circumstances {
+    std::vector<std::pair<int, rlim_t>> limits = {};  ///< resource and soft limit
+    std::string out_to = {};                          ///< stdout is this file; it must exist
+    bool has_no_stdout = false;                       ///< stdout is closed
+    /// Called again and again while the program runs, with its process, until it returns true.
+    std::function<bool(pid_t)> meanwhile = {};
+};
+
+inline std::vector<std::string> words_of(const std::string& line) {
+    std::istringstream in(line);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// A folder in which the program runs.
+class Shell {
+public:
+    explicit Shell(std::string program) : program_(std::move(program)) {}
+
+    /// Runs the program with these arguments; in a line they are separated by blanks.
+    Outcome operator()(const std::string& line, const Circumstances& c = {}) const { return (*this)(words_of(line), c); }
+    Outcome operator()(const std::vector<std::string>& arguments, const Circumstances& c = {}) const;
+
+    std::string operator/(const std::string& name) const { return folder_ / name; }
+    /// The names of everything in the folder.
+    std::set<std::string> files() const {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / ".")) names.insert(entry.path().filename());
+        return names;
+    }
+
+private:
+    /// Between fork and exec: nothing that allocates or locks. Does not return.
+    [[noreturn]] void become(char** arguments, const std::string& out, const std::string& err, const Circumstances& c) const {
+        const auto redirect = [](const std::string& path, int to) {
+            const int file = ::open(path.c_str(), O_WRONLY | O_CREAT, 0600);
+            if (file < 0 || ::dup2(file, to) < 0) ::_exit(126);
+        };
+        ::close(STDIN_FILENO);
+        ::open("/dev/null", O_RDONLY);
+        redirect(c.out_to.empty() ? out : c.out_to, STDOUT_FILENO);
+        redirect(err, STDERR_FILENO);
+        if (c.has_no_stdout) ::close(STDOUT_FILENO);
+        if (::chdir(directory_.c_str()) != 0) ::_exit(126);
+        for (const auto& [resource, value] : c.limits) {
+            rlimit limit{};
+            ::getrlimit(resource, &limit);
+            limit.rlim_cur = value;
+            ::setrlimit(resource, &limit);
+        }
+        ::execv(program_.c_str(), arguments);
+        ::_exit(127);
+    }
+
+    Folder folder_, streams_;
+    std::string program_, directory_ = folder_ / ".";
+};
+
+inline Outcome Shell::operator()(const std::vector<std::string>& arguments, const Circumstances& c) const {
+    constexpr std::chrono::seconds patience(120);
+    const std::string out = streams_ / "out", err = streams_ / "err";
+    write_bytes(out, "");
+    write_bytes(err, "");
+    std::vector<std::string> words{program_};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&] { return std::chrono::steady_clock::now() - start; };
+    const pid_t child = ::fork();
+    if (child == 0) become(pointers.data(), out, err, c);
+    int status = 0;
+    for (bool is_busy = static_cast<bool>(c.meanwhile); ::waitpid(child, &status, WNOHANG) == 0;) {
+        if (is_busy) is_busy = !c.meanwhile(child);
+        if (elapsed() > patience) ::kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    Outcome outcome;
+    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
+    outcome.out = bytes_of(out);
+    outcome.err = bytes_of(err);
+    outcome.seconds = std::chrono::duration<double>(elapsed()).count();
+    // A sanitizer's exit code could pass for one of ours.
+    for (const char* word : {"ERROR: AddressSanitizer", "ERROR: LeakSanitizer", "runtime error:"})
+        EXPECT_EQ(outcome.err.find(word), std::string::npos) << outcome;
+    return outcome;
+}
+
+/// The lines on stderr that are the program's own. Under a sanitizer codecs may print there too.
+inline std::vector<std::string> stderr_lines(const Outcome& outcome) {
+    std::vector<std::string> lines;
+    std::istringstream in(outcome.err);
+    for (std::string line; std::getline(in, line);)
+        if (!is_sanitized || line.starts_with("bandlimit: ")) lines.push_back(line);
+    return lines;
+}
+
+/// Whether the run ended with exit code 0 and without a word on stderr.
+[[nodiscard]] inline ::testing::AssertionResult succeeds(const Outcome& outcome) {
+    if (outcome.code != 0 || !stderr_lines(outcome).empty()) return ::testing::AssertionFailure() << outcome;
+    return ::testing::AssertionSuccess();
+}
+
+/// Whether the run ended with this exit code, nothing on stdout, and on stderr the one line that an error is, with `word`.
+[[nodiscard]] inline ::testing::AssertionResult fails(int code, const Outcome& outcome, const std::string& word = "") {
+    const std::vector<std::string> lines = stderr_lines(outcome);
+    const bool is_right = outcome.code == code && outcome.out.empty() && lines.size() == 1 &&
+                          lines[0].starts_with("bandlimit: error: ") && lines[0].find("; ") != std::string::npos &&
+                          lines[0].find(word) != std::string::npos && outcome.err.ends_with('\n');
+    if (is_right) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure() << "expected code " << code << " and one line with \"" << word << "\"; " << outcome;
+}
+
+/// A picture whose samples are f(x, y, channel), which must be numbers that T holds.
+template <class T, class F>
+AnyImage image_of(int width, int height, int channels, F f) {
+    Image<T> image(width, height, channels, Layout::interleaved);
+    const View<T> view = image.view();
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < channels; ++c) view(x, y, c) = static_cast<T>(f(x, y, c));
+    return image;
+}
+
+/// Writes `image` in the depth it has; the last of an even number of channels is alpha.
+inline void save(const std::string& path, AnyImage& image) {
+    const AnyConstView view = pixels(image);
+    const auto [width, height, channels] =
+        std::visit([](const auto& v) { return std::array{v.width, v.height, v.channels}; }, view);
+    write_image(path, target_of(depth_of(view), width, height, channels), view);
+}
+
+template <class T>
+Image<T> load(const std::string& path) {
+    return std::get<Image<T>>(read_image(path));
+}
+
+}  // namespace bandlimit
