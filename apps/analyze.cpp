@@ -84,7 +84,8 @@ std::vector<double> frequencies_of(const Options& o) {
     const std::vector<double> frequencies = numbers_or("--frequency", o.frequency, {0, 0.125, 0.25, 0.375, 0.5});
     for (const double f : frequencies)
         if (!(std::abs(f) <= limit))
-            throw UsageError(fmt::format("--frequency: {} is out of range; pass cycles per source sample, at most {}", f, limit));
+            throw UsageError(
+                fmt::format("--frequency: {} is out of range; pass cycles per source sample, at most {}", f, limit));
     return frequencies;
 }
 
@@ -105,25 +106,29 @@ std::vector<int> rows_of(const Options& o) {
 /// What the command line alone shows to be wrong.
 void check(const Options& o) {
     if (o.list) return;
-    if (o.kernel.empty()) throw UsageError("analyze: name a kernel (analyze --list shows them) or a taps.json");
-    if (o.from.has_value() != o.to.has_value()) throw UsageError("analyze: --from and --to belong together");
-    if (!o.rows.empty() && !o.to) throw UsageError("--rows: say which bank with --from N --to M");
+    if (o.kernel.empty()) throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
+    if (o.from.has_value() != o.to.has_value()) throw UsageError("analyze: --from and --to belong together; give both or none");
+    if (!o.rows.empty() && !o.to) throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
     if (!o.at.empty()) parse_numbers("--at", o.at);
     phases_of(o), frequencies_of(o), rows_of(o);
     if (o.is_taps_file()) {
         if (!o.phase.empty() || !o.at.empty())
-            throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
+            throw UsageError(
+                "analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
     } else if (is_radial(parse_kernel(o.kernel)) && o.to) {
-        throw UsageError(fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
+        throw UsageError(
+            fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
     }
     if (!o.plot.empty()) check_plot_format(o.plot);
 }
 
-// ---- Measuring -------------------------------------------------------------------------------------------------------
+// ---- Measuring
+// -------------------------------------------------------------------------------------------------------
 
 PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, const std::vector<double>& frequencies) {
     const PlacedWeights placed(taps, phase);
-    PhaseReport report{phase, taps.first, {}, {taps.weights}, sum_before, variance(placed), centroid(placed) + phase, {}};
+    PhaseReport report{phase, taps.first, {}, {taps.weights}, sum_before, variance(placed), centroid(placed) + phase,
+                       {}};
     for (const double f : frequencies) report.responses.push_back({f, response(placed, f)});
     return report;
 }
@@ -155,13 +160,15 @@ PhaseReport phase_report(const Subject& subject, double phase, const std::vector
 Bank bank_of(const Options& o, const Subject& subject) {
     const Axis src{*o.from, 0, double(*o.from)}, dst{*o.to, 0, double(*o.from)};
     if (const auto* kernel = std::get_if<Kernel>(&subject)) {
-        require_memory(bank_bytes(kernel->radius, src, dst), fmt::format("the bank from {} to {} samples", *o.from, *o.to));
+        require_memory(bank_bytes(kernel->radius, src, dst),
+                       fmt::format("the bank from {} to {} samples", *o.from, *o.to));
         return make_bank(*kernel, src, dst, Edge::renormalize);
     }
     const Taps& taps = *std::get<TapsFile>(subject).taps;
-    if (*o.to != std::max(1, *o.from / taps.factor))
-        throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}", o.kernel, taps.factor, *o.from,
-                                     *o.from / taps.factor, *o.to));
+    const int outputs = std::max(1, *o.from / taps.factor);
+    if (*o.to != outputs)
+        throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}; pass --to {}", o.kernel,
+                                     taps.factor, *o.from, outputs, *o.to, outputs));
     return make_bank(taps, *o.from, std::abs(sum(taps)) < 1e-9 ? Edge::reflect : Edge::renormalize);
 }
 
@@ -189,7 +196,8 @@ Report analyze(const Options& o, const Subject& subject) {
     return report;
 }
 
-// ---- Printing --------------------------------------------------------------------------------------------------------
+// ---- Printing
+// --------------------------------------------------------------------------------------------------------
 
 ordered_json to_json(const PhaseReport& p) {
     ordered_json responses = ordered_json::array();
@@ -213,9 +221,12 @@ ordered_json to_json(const Report& r) {
     // A float as a double prints with all the digits that lead back to it.
     for (const RowReport& row : r.rows)
         rows.push_back({{"output", row.output}, {"first", row.first}, {"weights", row.weights}});
-    return {{"kernel", r.name},     {"radius", r.radius ? ordered_json(*r.radius) : ordered_json()},
-            {"separable", r.separable}, {"values", values},
-            {"phases", phases},     {"profile", profile},
+    return {{"kernel", r.name},
+            {"radius", r.radius ? ordered_json(*r.radius) : ordered_json()},
+            {"separable", r.separable},
+            {"values", values},
+            {"phases", phases},
+            {"profile", profile},
             {"rows", rows}};
 }
 
@@ -256,7 +267,8 @@ void print(const Report& r) {
     for (const PhaseReport& p : r.phases) print_phase(p);
     print_gains(r);
     if (!r.rows.empty()) fmt::print("\n{:>8}{:>8}  weights\n", "output", "first");
-    for (const RowReport& row : r.rows) fmt::print("{:>8}{:>8}  {}\n", row.output, row.first, fmt::join(row.weights, " "));
+    for (const RowReport& row : r.rows)
+        fmt::print("{:>8}{:>8}  {}\n", row.output, row.first, fmt::join(row.weights, " "));
 }
 
 void print_list(bool json) {
@@ -269,7 +281,8 @@ void print_list(bool json) {
     for (const KernelInfo& k : kernel_list()) fmt::print("{:<24}{}\n", k.name, k.summary);
 }
 
-// ---- Drawing ---------------------------------------------------------------------------------------------------------
+// ---- Drawing
+// ---------------------------------------------------------------------------------------------------------
 
 template <class F>
 Series curve(const std::string& label, double from, double to, int steps, F f) {
@@ -350,12 +363,14 @@ void add_analyze(Program& program) {
                                       "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --plot bspline.svg");
     verb->add_option("KERNEL", o->kernel, "A kernel (analyze --list shows them), or a file that ends in .json");
     verb->add_flag("--list", o->list, "List the kernels with a line each");
-    verb->add_option("--at", o->at, "Positions to print the kernel's value at, between commas; default 0,0.5,... radius")
+    verb->add_option("--at", o->at,
+                     "Positions to print the kernel's value at, between commas; default 0,0.5,... radius")
         ->type_name("X,...");
-    verb->add_option("--phase", o->phase,
-                     "Where the output lies, right of source sample 0, in [0, 1); default 0,1/4,1/2,3/4. Weights are\n"
-                     "normalised to sum 1; \"first\" and \"centroid\" count from source sample 0. Of a radial kernel the\n"
-                     "output lies on the row of sample 0, and weights have rows")
+    verb->add_option(
+            "--phase", o->phase,
+            "Where the output lies, right of source sample 0, in [0, 1); default 0,1/4,1/2,3/4. Weights are\n"
+            "normalised to sum 1; \"first\" and \"centroid\" count from source sample 0. Of a radial kernel the\n"
+            "output lies on the row of sample 0, and weights have rows")
         ->type_name("P,...");
     verb->add_option("--frequency", o->frequency,
                      "Frequencies of responses, in cycles per source sample; default 0,1/8,1/4,3/8,1/2. Responses are\n"
@@ -369,7 +384,8 @@ void add_analyze(Program& program) {
     verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
         ->type_name("OUT");
     add_json(verb, o->json);
-    program.on(verb, [o] { check(*o); }, [o] { run(*o); });
+    program.on(
+        verb, [o] { check(*o); }, [o] { run(*o); });
 }
 
 }  // namespace bandlimit::app

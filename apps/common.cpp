@@ -134,7 +134,10 @@ void check_output_format(const std::string& path, std::optional<Depth> depth) {
     throw UsageError(fmt::format("--depth: {} files cannot hold {}; choose {}", format.name, name_of(*depth), depths));
 }
 
-void print_json(const nlohmann::ordered_json& report) { fmt::print("{}\n", report.dump(2)); }
+void print_json(const nlohmann::ordered_json& report) {
+    // Names of files need not be UTF-8, JSON must.
+    fmt::print("{}\n", report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
 
 void note(const std::string& text) {
     if (!quiet) fmt::print(real_stderr, "bandlimit: note: {}\n", one_line(text));

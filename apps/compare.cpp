@@ -42,8 +42,8 @@ public:
             stored_ = make_image(in.depth, in.width, std::min(block_rows, in.height), in.channels());
             values_ = Image<float>(in.width, std::min(block_rows, in.height), in.channels(), Layout::interleaved);
         }
-        const AnyView stored = std::visit(
-            [&](auto view) { return AnyView(cropped(view, 0, 0, in.width, rows)); }, view_of(stored_));
+        const AnyView stored =
+            std::visit([&](auto view) { return AnyView(cropped(view, 0, 0, in.width, rows)); }, view_of(stored_));
         reader_.read_rows(y, stored);
         const View<float> values = cropped(values_.view(), 0, 0, in.width, rows);
         parallel_for(rows, 4, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -56,7 +56,8 @@ public:
 private:
     void decode(const AnyConstView& stored, int row, Measure measure, const Encoding& encoding, bool is_data,
                 View<float> values) const {
-        const std::span<float> out(&values(0, row), static_cast<std::size_t>(values.width) * static_cast<std::size_t>(values.channels));
+        const std::span<float> out(&values(0, row),
+                                   static_cast<std::size_t>(values.width) * static_cast<std::size_t>(values.channels));
         if (measure == Measure::linear) return decode_row(stored, row, encoding, false, out);
         decode_row(stored, row, Encoding{}, false, out);  // as stored
         if (is_data || is_integer(info().depth) || encoding.transfer != Transfer::linear) return;
@@ -148,8 +149,8 @@ void convert(View<float> v, int alpha, double (*transfer)(double)) {
 /// unexplained.
 Shift shift_of(const Options& o, const Source& a, const Source& b, Measure as, View<float> va, View<float> vb) {
     const Shift measured = estimate_shift(va, vb, o.parallel);
-    const bool has_curve = a.info().encoding(o.space).transfer == Transfer::srgb &&
-                           b.info().encoding(o.space).transfer == Transfer::srgb;
+    const bool has_curve =
+        a.info().encoding(o.space).transfer == Transfer::srgb && b.info().encoding(o.space).transfer == Transfer::srgb;
     if (!has_curve) return measured;
     const auto transfer = as == Measure::encoded ? srgb_to_linear : linear_to_srgb;
     convert(va, a.info().alpha, transfer);
@@ -194,14 +195,15 @@ Result measure(const Options& o, Source& a, Source& b, Measure as) {
 
 void check_same_shape(const Options& o, const ImageInfo& a, const ImageInfo& b) {
     if (a.width != b.width || a.height != b.height)
-        throw std::runtime_error(fmt::format("{} is {} x {}, {} is {} x {}; resize one of them first (bandlimit resize)", o.a,
-                                             a.width, a.height, o.b, b.width, b.height));
+        throw std::runtime_error(
+            fmt::format("{} is {} x {}, {} is {} x {}; resize one of them first (bandlimit resize)", o.a, a.width,
+                        a.height, o.b, b.width, b.height));
     if (a.channels() != b.channels())
-        throw std::runtime_error(fmt::format("{} has {} channels, {} has {}; give both the same", o.a, a.channels(), o.b,
-                                             b.channels()));
+        throw std::runtime_error(
+            fmt::format("{} has {} channels, {} has {}; give both the same", o.a, a.channels(), o.b, b.channels()));
     if (o.border > (std::min(a.width, a.height) - 1) / 2)
-        throw std::runtime_error(fmt::format("--border {} leaves nothing of {}, which is {} x {}; use {} or less", o.border, o.a,
-                                             a.width, a.height, (std::min(a.width, a.height) - 1) / 2));
+        throw std::runtime_error(fmt::format("--border {} leaves nothing of {}, which is {} x {}; use {} or less",
+                                             o.border, o.a, a.width, a.height, (std::min(a.width, a.height) - 1) / 2));
 }
 
 ordered_json decibels(double psnr) { return std::isinf(psnr) ? ordered_json("inf") : ordered_json(psnr); }

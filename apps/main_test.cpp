@@ -28,31 +28,24 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
              {"frob", "\"frob\" is no verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},
-             {"resize in.png", "OUT"},
              {resize, "--size"},
              {resize + "--size 8x8 --scale 1", "one of"},
              {resize + "--size 8x8 --width 8", "one of"},
              {resize + "--size 0x0", "0x0"},
              {resize + "--size 8x", "8x"},
-             {resize + "--size -8x8", "-8x8"},
              {resize + "--size 99999999999x1", "99999999999x1"},
              {resize + "--width 0", "--width"},
-             {resize + "--height -3", "--height"},
              {resize + "--scale 0", "--scale"},
-             {resize + "--scale -1", "--scale"},
              {resize + "--scale nan", "--scale"},
-             {resize + "--scale inf", "--scale"},
              {resize + "--scale 1/0", "--scale"},
              {resize + "--scale 1e30", "2147483647"},
              {resize + "--scale 1 --kernel bicubic", "bspline, catmull-rom, mitchell or cubic:B:C"},
              {resize + "--scale 1 --kernel none", "nearest, box, tent, quadratic"},
-             {resize + "--scale 1 --kernel lanczos0", "lanczos"},
              {resize + "--scale 1 --edge mirror", "clamp, reflect, wrap, zero or renormalize"},
              {resize + "--scale 1 --align middle", "corners or centers"},
              {resize + "--scale 1 --space rgb", "auto, srgb, linear or data"},
              {resize + "--scale 1 --alpha none", "premultiply or straight"},
              {resize + "--scale 1 --depth u32", "u8, u16, f16 or f32"},
-             {resize + "--scale 1 --depth f16", "u16"},
              {resize + "--scale 1 --antiring 1.5", "--antiring"},
              {resize + "--scale 1 --antiring nan", "--antiring"},
              {resize + "--scale 1 --threads -1", "--threads"},
@@ -67,33 +60,24 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
              {"pattern --bogus checker out.png --size 8x8", "--bogus"},
              {"pattern checker out.png", "--size"},
              {pattern + "--cell 0", "checkerboard"},
-             {pattern + "--antialias bicubic", "mitchell"},
              {pattern + "--samples 0", "--samples"},
-             {pattern + "--spokes 5", "--spokes"},
              {"pattern siemens out.png --size 8x8 --antialias exact", "siemens"},
-             {"pattern siemens out.png --size 8x8 --spokes 0", "spokes"},
-             {"pattern noise out.png --size 8x8 --antialias exact", "noise"},
              {"pattern noise out.png --size 8x8 --seed -1", "--seed"},
              {"pattern checker out.jpg --size 8x8 --depth u16", "u8"},
-             {"compare one.png", "B"},
              {compare + "--border -1", "--border"},
              {compare + "--measure codes", "encoded or linear"},
              {compare + "--diff out.xyz", "png, jpg, tif, exr"},
              {"analyze", "--list"},
              {"analyze none", "nearest, box, tent, quadratic"},
-             {"analyze bicubic", "mitchell"},
              {"analyze gaussian:0", "sigma"},
              {"analyze tent --phase 1", "--phase"},
-             {"analyze tent --phase x", "--phase"},
              {"analyze tent --at 1,,2", "--at"},
              {"analyze tent --frequency 1e308", "--frequency"},
              {"analyze tent --from 4", "--to"},
-             {"analyze tent --from 0 --to 4", "--from"},
              {"analyze tent --from 4 --to 2 --rows 2", "--rows"},
              {"analyze tent --rows 0", "--rows"},
              {"analyze jinc2 --from 4 --to 2", "radial"},
              {"analyze tent --plot out.bmp", ".svg or .png"},
-             {"info", "FILE"},
              {"tour", "DIR"},
          })
         EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;
@@ -162,12 +146,13 @@ TEST(CommandLine, TheTourIsAPageWithItsPictures) {
 TEST(CommandLine, AReportThatCannotBeWrittenIsExitCode1) {
     const Shell shell(BANDLIMIT_PROGRAM);
     add_examples(shell);
-    for (const std::string line : {"resize examples/gravel.png out.png --scale 0.5 --json", "info examples/coffee.png --json",
-                                   "compare examples/gravel.png examples/gravel.png --json", "analyze tent --json",
-                                   "analyze --list", "pattern box out.png --size 8x8 --json", "--version", "resize --help"}) {
+    for (const std::string line :
+         {"resize examples/gravel.png out.png --scale 0.1 --json", "info examples/coffee.png",
+          "compare examples/gravel.png examples/gravel.png --json", "analyze tent --from 900 --to 300",
+          "pattern box out.png --size 8x8 --json", "--version", "resize --help"})
         EXPECT_TRUE(fails(1, shell(line, {.out_to = "/dev/full"}), "stdout")) << line;
+    for (const std::string line : {"resize examples/gravel.png out.png --scale 0.1 --json", "analyze --list", "--help"})
         EXPECT_TRUE(fails(1, shell(line, {.has_no_stdout = true}), "stdout")) << line;
-    }
 }
 
 TEST(CommandLine, ClosedStreamsDoNotReachFiles) {

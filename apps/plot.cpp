@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -38,6 +37,8 @@ std::string quoted(const std::string& text) {
     return out + "\"";
 }
 
+constexpr double legend_line = 18;  // pixels
+
 bool is_svg(const std::string& path) { return path.ends_with(".svg"); }
 
 std::string range(const char* axis, const std::optional<Range>& r) {
@@ -51,8 +52,7 @@ std::string data_block(const Series& series, std::size_t index) {
     for (std::size_t i = 0; i < series.x.size(); ++i) {
         if (std::isfinite(series.x[i]) && std::isfinite(series.y[i]))
             text += fmt::format("{:.9g} {:.9g}\n", series.x[i], series.y[i]);
-        else
-            text += "\n";
+        else text += "\n";
     }
     return text + "EOD\n";
 }
@@ -67,7 +67,8 @@ std::string clauses(const Series& series, std::size_t index) {
             return fmt::format("$d{} using 1:2 with lines lw 1.8 lc rgb \"{}\" {}", index, color, label);
         case Series::Style::points: return marks + label;
         case Series::Style::stems:
-            return marks + label + fmt::format(", $d{} using 1:2 with impulses lw 1.2 lc rgb \"{}\" notitle", index, color);
+            return marks + label +
+                   fmt::format(", $d{} using 1:2 with impulses lw 1.2 lc rgb \"{}\" notitle", index, color);
     }
     return {};
 }
@@ -79,19 +80,21 @@ constexpr int pixels_per_label = 150;
 int legend_rows(const std::vector<Panel>& panels, int columns) {
     std::ptrdiff_t rows = 0;
     for (const Panel& panel : panels) {
-        const auto labels = std::count_if(panel.series.begin(), panel.series.end(), [](const Series& s) { return !s.label.empty(); });
+        const auto labels =
+            std::count_if(panel.series.begin(), panel.series.end(), [](const Series& s) { return !s.label.empty(); });
         rows = std::max(rows, (labels + columns - 1) / columns);
     }
     return static_cast<int>(rows);
 }
 
+/// Two entries on a line.
 std::size_t legend_lines(const Panel& panel) {
     const auto labelled = std::count_if(panel.series.begin(), panel.series.end(),
                                         [](const Series& series) { return !series.label.empty(); });
     return static_cast<std::size_t>(labelled + 1) / 2;
 }
 
-std::string panel_commands(const Panel& panel) {
+std::string panel_commands(const Panel& panel, int height) {
     std::string text = "set title " + quoted(panel.title) + "\nset xlabel " + quoted(panel.x_label) + "\nset ylabel " +
                        quoted(panel.y_label) + "\n" + range("x", panel.x_range) + range("y", panel.y_range);
     std::string plot;
@@ -99,7 +102,10 @@ std::string panel_commands(const Panel& panel) {
         text += data_block(panel.series[i], i);
         plot += (i ? ", " : "plot ") + clauses(panel.series[i], i);
     }
-    text += legend_lines(panel) > 0 ? "set key on\n" : "unset key\n";
+    const std::size_t lines = legend_lines(panel);
+    text += lines == 0 ? "unset key\n"
+                       : fmt::format("set key center top at graph 0.5, screen {:.4f} vertical maxrows {} samplen 1.5\n",
+                                     (legend_line * static_cast<double>(lines) + 6) / height, lines);
     return text + plot + "\n";
 }
 
@@ -109,7 +115,7 @@ std::string margins(const std::vector<Panel>& panels, int width, int height) {
     for (const Panel& panel : panels) lines = std::max(lines, legend_lines(panel));
     const bool has_titles =
         std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.title.empty(); });
-    const double bottom = 58 + 18.0 * static_cast<double>(lines), top = has_titles ? 34 : 14;
+    const double bottom = 58 + legend_line * static_cast<double>(lines), top = has_titles ? 34 : 14;
     return fmt::format("set multiplot layout 1,{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing {:.4f}\n", panels.size(),
                        75.0 / width, 1 - 20.0 / width, bottom / height, 1 - top / height, 95.0 / width);
 }
@@ -127,7 +133,7 @@ std::string script(const std::vector<Panel>& panels, const std::string& path, in
     text += fmt::format("set lmargin 8\nset rmargin 2\nset bmargin 4\nset tmargin {}\n",
                         2.5 + 1.4 * legend_rows(panels, columns));
     text += margins(panels, width, height);
-    for (const Panel& panel : panels) text += panel_commands(panel);
+    for (const Panel& panel : panels) text += panel_commands(panel, height);
     return text + "unset multiplot\n";
 }
 
@@ -135,7 +141,8 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File temporary_file() {
     File file(std::tmpfile(), std::fclose);
-    if (!file) throw std::runtime_error(message("a temporary file cannot be made for gnuplot (", std::strerror(errno), ")"));
+    if (!file)
+        throw std::runtime_error(message("a temporary file cannot be made for gnuplot (", std::strerror(errno), ")"));
     return file;
 }
 
@@ -208,7 +215,7 @@ void run_gnuplot(const std::string& commands, const std::string& path, AtomicFil
 void check_plot_format(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);
-    if (!is_svg(path) && !path.ends_with(".png")) fail("plot \"", path, "\": end the name in .svg or .png");
+    if (!is_svg(path) && !path.ends_with(".png")) fail("plot \"", path, "\" is no kind of file that is drawn; end the name in .svg or .png");
 }
 
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height) {

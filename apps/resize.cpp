@@ -51,9 +51,9 @@ std::array<double, 3> parse_background(const std::string& text) {
 void check(const Options& o) {
     const int sizes = !o.size.empty() + !o.scale.empty() + (o.width > 0 || o.height > 0);
     if (sizes != 1)
-        throw UsageError("resize: give the new size by one of --size WxH, --scale S, or --width W and/or --height H");
+        throw UsageError("resize: a new size is given no times or twice; give one of --size WxH, --scale S, or --width W and/or --height H");
     if (!o.size.empty()) parse_size("--size", o.size);
-    if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0)) throw UsageError("--scale: must be above 0, as 0.5 or 2");
+    if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0)) throw UsageError("--scale: a size cannot be 0 or less; pass a number above 0, as 0.5 or 2");
     if (!(o.antiring >= 0 && o.antiring <= 1))  // a range check of the parser lets NaN pass
         throw UsageError(fmt::format("--antiring: {} is out of range; pass 0 to 1", o.antiring));
     if (!o.region.empty()) parse_region(o.region);

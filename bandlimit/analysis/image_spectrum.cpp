@@ -13,7 +13,8 @@ namespace bandlimit {
 namespace {
 
 std::vector<double> window_of(Window window, int count) {
-    std::vector<double> w = window == Window::hann ? hann(count) : std::vector<double>(static_cast<std::size_t>(count), 1.0);
+    std::vector<double> w =
+        window == Window::hann ? hann(count) : std::vector<double>(static_cast<std::size_t>(count), 1.0);
     double square = 0;
     for (const double v : w) square += v * v;
     for (double& v : w) v /= std::sqrt(square / count);

@@ -27,11 +27,9 @@ struct RadialSpectrum {
 
 /// The radially averaged power spectrum of `image`, its mean removed; the mean of its channels' spectra.
 ///
-/// A window is scaled so that its mean square is 1: `power` then sums to the variance under the window, which is that of
-/// the image only on average.
-/// range    what is not finite counts as 0
-/// cost     one complex FFT of the image per channel, in double
-/// throws   Error for an empty image
+/// A window is scaled so that its mean square is 1: `power` then sums to the variance under the window, which is that
+/// of the image only on average. range    what is not finite counts as 0 cost     one complex FFT of the image per
+/// channel, in double throws   Error for an empty image
 RadialSpectrum radial_spectrum(View<const float> image, Window window = Window::hann);
 
 }  // namespace bandlimit

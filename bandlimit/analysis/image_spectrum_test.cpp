@@ -52,7 +52,8 @@ TEST(RadialSpectrum, OfWhiteNoiseIsFlatAtItsVariance) {
         for (int b = 20; b < 120; b += 20) {
             double density = 0;
             for (int i = b; i < b + 20; ++i) density += s.density[static_cast<std::size_t>(i)] / 20;
-            // 20 rings hold more than 3500 coefficients, each with a deviation of its mean: 10 % is over four of theirs.
+            // 20 rings hold more than 3500 coefficients, each with a deviation of its mean: 10 % is over four of
+            // theirs.
             EXPECT_NEAR(density, 1.0 / 12, 0.1 / 12) << "bin " << b;
         }
     }

@@ -63,8 +63,8 @@ TEST(Spectrum, RightRadialLanczosDoesNot) {
     for (const int lobes : {2, 3}) EXPECT_LT(peak(jinc_lanczos(lobes)).second, 1.03) << lobes;
 }
 
-// Sampling a kernel repeats its spectrum: sum_j k(j - p) e^{2 pi i f (j - p)} = sum_m K(f + m) e^{...}; at f = 0 and for
-// kernels whose K vanishes at the whole frequencies the weights sum to K(0) at every phase.
+// Sampling a kernel repeats its spectrum: sum_j k(j - p) e^{2 pi i f (j - p)} = sum_m K(f + m) e^{...}; at f = 0 and
+// for kernels whose K vanishes at the whole frequencies the weights sum to K(0) at every phase.
 TEST(Spectrum, OfSampledKernelIsTheSumOfItsRepetitions) {
     const double phase = 0.3, f = 0.2;
     const PhaseWeights w = weights_at(bspline(), phase);

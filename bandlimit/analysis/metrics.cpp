@@ -77,9 +77,7 @@ Image<float> windowed(const Bank& along_x, const Bank& along_y, View<const float
 
 }  // namespace
 
-double Measures::psnr() const {
-    return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse);
-}
+double Measures::psnr() const { return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse); }
 
 ErrorMeter::ErrorMeter(int width, int height, int channels, int border, Parallel parallel)
     : width_(width), height_(height), border_(border), parallel_(parallel) {
@@ -151,8 +149,7 @@ void SsimMeter::hold_row(View<const float> a, View<const float> b, int y) {
 
 void SsimMeter::measure_held() {
     const View<float> held = cropped(planes_.view(), 0, 0, planes_.width(), held_);
-    const Image<float> means =
-        windowed(window_bank(held.width, small_), window_bank(held_, small_), held, parallel_);
+    const Image<float> means = windowed(window_bank(held.width, small_), window_bank(held_, small_), held, parallel_);
     const View<const float> m = means.view();
     const std::size_t channels = total_.size();
     std::vector<double> row_sums(static_cast<std::size_t>(m.height) * channels);
@@ -172,8 +169,7 @@ void SsimMeter::measure_held() {
     // The next window begins in the rows that this one ended with.
     const int kept = window_size - 1;
     for (int p = 0; p < held.channels; ++p)
-        for (int y = 0; y < kept; ++y)
-            std::copy_n(&held(0, held_ - kept + y, p), held.width, &held(0, y, p));
+        for (int y = 0; y < kept; ++y) std::copy_n(&held(0, held_ - kept + y, p), held.width, &held(0, y, p));
     held_ = kept;
 }
 
@@ -210,8 +206,8 @@ namespace {
 template <class... Meters>
 Metrics measure(View<const float> a, View<const float> b, int border, Parallel parallel) {
     if (!same_shape(a, b))
-        fail("compare: images of ", a.width, " x ", a.height, " x ", a.channels, " and ", b.width, " x ", b.height, " x ",
-             b.channels, "; pass images of one shape");
+        fail("compare: images of ", a.width, " x ", a.height, " x ", a.channels, " and ", b.width, " x ", b.height,
+             " x ", b.channels, "; pass images of one shape");
     std::vector<Measures> per_channel;
     const auto run = [&](auto meter) {
         meter.add_rows(a, b);

@@ -88,7 +88,8 @@ TEST(Ssim, EqualsItsDefinition) {
         for (const float part : {0.02f, 0.3f, 1.0f}) {
             const Image<float> b = mixed(a.view(), other.view(), part);
             // Means in float of values up to 1 are within 12 * 2^-24; that over C2 = 9e-4 and averaged over positions.
-            EXPECT_NEAR(ssim(a.view(), b.view()), direct_ssim(a.view(), b.view()), 2e-5) << w << " x " << h << " " << part;
+            EXPECT_NEAR(ssim(a.view(), b.view()), direct_ssim(a.view(), b.view()), 2e-5)
+                << w << " x " << h << " " << part;
         }
     }
 }

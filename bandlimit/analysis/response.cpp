@@ -33,7 +33,8 @@ int steps_for(const PlacedWeights& w, double begin, double end) {
 
 void check_band(const char* function, double begin, double end) {
     if (!(begin >= 0 && end >= begin && std::isfinite(end)))
-        fail(function, ": band [", begin, ", ", end, "]; pass frequencies of at least 0, in cycles per sample, in order");
+        fail(function, ": band [", begin, ", ", end,
+             "]; pass frequencies of at least 0, in cycles per sample, in order");
 }
 
 }  // namespace

@@ -21,16 +21,18 @@ using std::numbers::pi;
 
 constexpr int largest_window = 1024;
 constexpr int smallest_axis = 4;
-constexpr double fit_band = 0.25;    // cycles per sample: below most of what down- and upsampling alias or cut
-constexpr double flat = 1e-3;        // share of gradient energy under which a direction holds no structure
-constexpr double oblique = 0.02;     // sine of the angle to an axis from which stripes are not along it
-constexpr double coherent = 0.5;     // agreement of phases below which images are unrelated
+constexpr double fit_band = 0.25;  // cycles per sample: below most of what down- and upsampling alias or cut
+constexpr double residual_band = 0.1;
+constexpr double flat = 1e-3;     // share of gradient energy under which a direction holds no structure
+constexpr double oblique = 0.02;  // sine of the angle to an axis from which stripes are not along it
+constexpr double coherent = 0.5;  // agreement of phases below which images are unrelated
 
 struct Vec {
     double x = 0, y = 0;
 };
 
-// ---- Images ----------------------------------------------------------------------------------------------------------
+// ---- Images
+// ----------------------------------------------------------------------------------------------------------
 
 Image<float> mean_of_channels(View<const float> v) {
     Image<float> mean(v.width, v.height);
@@ -89,7 +91,8 @@ int fast_size(int n) {
     return std::max(n, 1);
 }
 
-// ---- Spectra ---------------------------------------------------------------------------------------------------------
+// ---- Spectra
+// ---------------------------------------------------------------------------------------------------------
 
 /// The transform of v under a Hann window, the mean that v has under it removed.
 ComplexGrid tapered_spectrum(View<const float> v) {
@@ -138,8 +141,8 @@ Vec coarse_shift(const ComplexGrid& a, const ComplexGrid& b) {
 
 /// Products of two spectra, averaged over the bins around one.
 struct Products {
-    Complex cross;           ///< B conj(A)
-    double aa = 0, bb = 0;   ///< |A|^2 and |B|^2
+    Complex cross;          ///< B conj(A)
+    double aa = 0, bb = 0;  ///< |A|^2 and |B|^2
     double coherence() const { return aa * bb > 0 ? std::norm(cross) / (aa * bb) : 0; }
 };
 
@@ -176,7 +179,8 @@ Vec fit_plane(const ComplexGrid& a, const ComplexGrid& b) {
     return {(px * yy - py * xy) / determinant, (py * xx - px * xy) / determinant};
 }
 
-// ---- Alignment -------------------------------------------------------------------------------------------------------
+// ---- Alignment
+// -------------------------------------------------------------------------------------------------------
 
 /// The parts of two images that show the same.
 struct Aligned {
@@ -196,12 +200,12 @@ Axis overlap(int count, double shift) {
 
 /// Samples of v on an axis that lies `shift` further along; sharp up to the band that is fitted.
 Bank shifted_bank(int count, const Axis& axis, double shift) {
-    return make_bank(kaiser(8, 8), Axis{count, 0, double(count)}, Axis{axis.count, axis.begin + shift, axis.end + shift},
-                     Edge::reflect);
+    return make_bank(kaiser(8, 8), Axis{count, 0, double(count)},
+                     Axis{axis.count, axis.begin + shift, axis.end + shift}, Edge::reflect);
 }
 
-/// `a` through the zero-phase filter that makes its spectrum most like that of b: what a filter does to the content near
-/// a taper's slope then happens to both images, and cancels.
+/// `a` through the zero-phase filter that makes its spectrum most like that of b: what a filter does to the content
+/// near a taper's slope then happens to both images, and cancels.
 Image<float> equalized(View<const float> a, const ComplexGrid& spectrum_a, const ComplexGrid& spectrum_b) {
     ComplexGrid grid(a.width, a.height);
     for (int y = 0; y < a.height; ++y)
@@ -219,13 +223,13 @@ Image<float> equalized(View<const float> a, const ComplexGrid& spectrum_a, const
     return out;
 }
 
-/// The share of B's power that A lacks, both weighted as gradients are.
+/// The share of B's power that A lacks at low frequencies, where resampling leaves no alias but other faults show.
 double residual_of(const ComplexGrid& a, const ComplexGrid& b) {
     double missing = 0, all = 0;
     for_band(a, [&](int x, int y, Vec f) {
-        const double weight = f.x * f.x + f.y * f.y;
-        missing += weight * std::norm(b.at(x, y) - a.at(x, y));
-        all += weight * std::norm(b.at(x, y));
+        if (std::hypot(f.x, f.y) > residual_band || (x == 0 && y == 0)) return;
+        missing += std::norm(b.at(x, y) - a.at(x, y));
+        all += std::norm(b.at(x, y));
     });
     return all > 0 ? std::min(1.0, missing / all) : 1;
 }
@@ -264,7 +268,8 @@ Aligned align(View<const float> a, View<const float> b, Parallel parallel) {
     return {part, std::move(back), shift, residual_of(spectrum_a, spectrum_b)};
 }
 
-// ---- What the images allow to say ------------------------------------------------------------------------------------
+// ---- What the images allow to say
+// ------------------------------------------------------------------------------------
 
 struct Gradient {
     Image<float> x, y;
@@ -320,8 +325,8 @@ Image<float> along(const Gradient& g, Vec direction) {
     Image<float> out(g.x.width(), g.x.height());
     for (int y = 0; y < out.height(); ++y)
         for (int x = 0; x < out.width(); ++x)
-            out.view()(x, y) = static_cast<float>(direction.x * double(g.x.view()(x, y)) +
-                                                  direction.y * double(g.y.view()(x, y)));
+            out.view()(x, y) =
+                static_cast<float>(direction.x * double(g.x.view()(x, y)) + direction.y * double(g.y.view()(x, y)));
     return out;
 }
 
@@ -386,8 +391,8 @@ ShiftWindow shift_window(int width, int height) {
 
 Shift estimate_shift(View<const float> a, View<const float> b, Parallel parallel) {
     if (!same_shape(a, b) || a.width < 1 || a.height < 1 || a.channels < 1)
-        fail("estimate_shift: images of ", a.width, " x ", a.height, " x ", a.channels, " and ", b.width, " x ", b.height,
-             " x ", b.channels, "; pass images of one shape, with samples");
+        fail("estimate_shift: images of ", a.width, " x ", a.height, " x ", a.channels, " and ", b.width, " x ",
+             b.height, " x ", b.channels, "; pass images of one shape, with samples");
     const ShiftWindow w = shift_window(a.width, a.height);
     Image<float> window_a = mean_of_channels(cropped(a, w.x, w.y, w.width, w.height));
     Image<float> window_b = mean_of_channels(cropped(b, w.x, w.y, w.width, w.height));

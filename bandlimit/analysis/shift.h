@@ -10,8 +10,8 @@ namespace bandlimit {
 /// A shift in samples: above 0 where the content of the second image lies right of, or below, that of the first.
 struct Shift {
     std::optional<double> x, y;  ///< none where undefined
-    /// The share of the second image's gradient energy, below a quarter of the sampling rate, that the first one does
-    /// not explain when shifted and put through a symmetric filter; 1 where nothing is defined.
+    /// The share of the second image's power, below a tenth of the sampling rate, that the first one does not explain
+    /// when shifted and put through a symmetric filter; 1 where nothing is defined, or the image too small to tell.
     double residual = 1;
 };
 
@@ -24,8 +24,8 @@ ShiftWindow shift_window(int width, int height);
 /// The shift between two images of the same scene, however each was filtered by something symmetric.
 ///
 /// Mean over channels; correlation to the nearest sample; then b is shifted back, and the plane through the phases of
-/// the cross-spectrum below a quarter of the sampling rate (least squares, weighted by cross-power and coherence) says by
-/// how much that was wrong, until it is less than 1e-4. A second round compares b with what a looks like through b's
+/// the cross-spectrum below a quarter of the sampling rate (least squares, weighted by cross-power and coherence) says
+/// by how much that was wrong, until it is less than 1e-4. A second round compares b with what a looks like through b's
 /// filter: at the end both tapered images agree, so that the taper adds no bias.
 ///
 /// none     along an axis of less than 4 samples, or along which an image does not vary; along both for images that
@@ -33,7 +33,8 @@ ShiftWindow shift_window(int width, int height);
 ///          phases of the cross-spectrum C of the gradients agree too little, Re sum C / sum |C| < 0.5, or less than
 ///          five standard deviations of what unrelated images of so few independent frequencies would give (at most
 ///          0.95)
-/// accuracy 0.01 samples for images of 100 x 100 and more that differ by a shift and symmetric filters of a few taps; what
+/// accuracy 0.01 samples for images of 100 x 100 and more that differ by a shift and symmetric filters of a few taps;
+/// what
 ///          their gradients allow under noise. Shifts up to about a third of the window
 /// range    what is not finite counts as 0; the scale of values does not matter
 /// cost     at most about twenty FFTs of the window, in double

@@ -146,6 +146,7 @@ void AtomicFile::close() noexcept {
 }
 
 std::size_t AtomicFile::write(const void* data, std::size_t size) noexcept {
+    if (size == 0) return 0;  // codecs pass a null pointer with it
     errno = 0;
     const std::size_t done = std::fwrite(data, 1, size, file_);
     if (done != size) remember_failure();

@@ -11,6 +11,11 @@
 
 #include "bandlimit/io/files_test.h"
 
+/// What the leak sanitizer, where there is one, shall forgive: on a PNG that is cut short, OpenImageIO 2.4 leaves a
+/// function by longjmp and never frees a short text.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:ImageInput::geterror\n"; }
+
 namespace bandlimit {
 namespace {
 
@@ -24,9 +29,13 @@ void read_all(const std::string& path) {
         reader.read_rows(y, rows_of(view_of(rows), 0, std::min(block, info.height - y)));
 }
 
+/// The lowest `bytes` bytes of a number, which has eight.
 std::string number(std::uint64_t value, int bytes, bool is_big = false) {
     std::string text;
-    for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * (is_big ? bytes - 1 - i : i)) & 0xff);
+    for (int i = 0; i < bytes; ++i) {
+        const int place = is_big ? bytes - 1 - i : i;
+        text += static_cast<char>(place < 8 ? value >> (8 * place) & 0xff : 0);
+    }
     return text;
 }
 
@@ -204,7 +213,8 @@ TEST(Hostile, AnInterlacedPictureIsRefusedForTheMemoryItNeeds) {
     const std::string path = folder / "a.png";
     write_bytes(path, png(1000000, 1000000, 1));
     std::filesystem::resize_file(path, 130 << 20);
-    EXPECT_TRUE(fails_for(path, [&] { ImageReader reader(path); }, "memory"));
+    EXPECT_TRUE(fails_for(
+        path, [&] { ImageReader reader(path); }, "memory"));
 }
 
 TEST(Hostile, WhatIsNoImageIsNamed) {

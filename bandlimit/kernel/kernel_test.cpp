@@ -62,6 +62,7 @@ TEST(Kernel, IsNotZeroJustInsideItsRadius) {
 
 TEST(Kernel, IsTheMeanOfBothSidesWhereItJumps) {
     for (const Kernel& kernel : all_kernels()) {
+        if (kernel.name.ends_with("-unscaled")) continue;  // published as 0 there
         const double r = kernel.radius;
         const double inside = kernel.value(std::nextafter(r, 0)), at = kernel.value(r);
         EXPECT_NEAR(at, inside / 2, 1e-12) << kernel.name;
@@ -176,6 +177,7 @@ TEST(Radial, UnscaledJincJumpsAtItsEdge) {
     EXPECT_NEAR(jinc_lanczos_unscaled(3).value(3 - 1e-12), 0.00534, 5e-6);
     EXPECT_NEAR(jinc_lanczos_unscaled(2).value(0), std::numbers::pi / 4, 1e-15);
     EXPECT_EQ(jinc_lanczos_unscaled(2).radius, 2);
+    EXPECT_EQ(jinc_lanczos_unscaled(2).value(2), 0) << "as published, for r < 2";
 }
 
 TEST(Radial, WrongLanczosIsTheOneDimensionalOne) {

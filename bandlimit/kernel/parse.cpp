@@ -71,7 +71,7 @@ constexpr std::array ambiguities{
 /// A name taken apart: the word, digits that end it, what follows them, and the parameters after colons.
 struct Parts {
     std::string_view whole, head;
-    std::vector<double> parameters;
+    std::vector<std::string_view> parameters;
 };
 
 std::optional<double> parse_number(std::string_view text) {
@@ -86,9 +86,7 @@ Parts split(std::string_view name) {
     for (auto colon = name.find(':'); colon != std::string_view::npos;) {
         const auto next = name.find(':', colon + 1);
         const auto word = name.substr(colon + 1, next == std::string_view::npos ? next : next - colon - 1);
-        const auto value = parse_number(word);
-        if (!value) fail("kernel \"", name, "\": \"", word, "\" is no number; write as in ", kernels[8].example);
-        parts.parameters.push_back(*value);
+        parts.parameters.push_back(word);
         colon = next;
     }
     return parts;
@@ -140,12 +138,26 @@ constexpr std::array lobed_kernels{
 };
 
 std::optional<Kernel> with_parameters(const Parts& parts) {
-    const auto& p = parts.parameters;
-    const auto take = [&](std::size_t count, std::string_view form) { expect_parameters(parts, count, form); };
-    if (parts.head == "cubic") return take(2, "cubic:B:C"), cubic(p[0], p[1]);
-    if (parts.head == "sinc") return take(1, "sinc:R, as sinc:4"), truncated_sinc(p[0]);
-    if (parts.head == "gaussian") return take(1, "gaussian:SIGMA, as gaussian:0.5"), gaussian(p[0]);
-    if (parts.head == "kaiser") return take(2, "kaiser:R:BETA, as kaiser:4:6"), kaiser(p[0], p[1]);
+    const auto take = [&](std::size_t count, std::string_view form) {
+        expect_parameters(parts, count, form);
+        std::vector<double> numbers;
+        for (const std::string_view word : parts.parameters) {
+            const auto value = parse_number(word);
+            if (!value) fail("kernel \"", parts.whole, "\": \"", word, "\" is no number; write ", form);
+            numbers.push_back(*value);
+        }
+        return numbers;
+    };
+    if (parts.head == "cubic") {
+        const auto p = take(2, "cubic:B:C, as cubic:0.25:0.375");
+        return cubic(p[0], p[1]);
+    }
+    if (parts.head == "sinc") return truncated_sinc(take(1, "sinc:R, as sinc:4")[0]);
+    if (parts.head == "gaussian") return gaussian(take(1, "gaussian:SIGMA, as gaussian:0.5")[0]);
+    if (parts.head == "kaiser") {
+        const auto p = take(2, "kaiser:R:BETA, as kaiser:4:6");
+        return kaiser(p[0], p[1]);
+    }
     return {};
 }
 
