@@ -106,9 +106,12 @@ std::vector<int> rows_of(const Options& o) {
 /// What the command line alone shows to be wrong.
 void check(const Options& o) {
     if (o.list) return;
-    if (o.kernel.empty()) throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
-    if (o.from.has_value() != o.to.has_value()) throw UsageError("analyze: --from and --to belong together; give both or none");
-    if (!o.rows.empty() && !o.to) throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
+    if (o.kernel.empty())
+        throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
+    if (o.from.has_value() != o.to.has_value())
+        throw UsageError("analyze: --from and --to belong together; give both or none");
+    if (!o.rows.empty() && !o.to)
+        throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
     if (!o.at.empty()) parse_numbers("--at", o.at);
     phases_of(o), frequencies_of(o), rows_of(o);
     if (o.is_taps_file()) {

@@ -54,22 +54,28 @@ void require_one_subcommand(CLI::App& app, const std::string& noun) {
 }
 
 CLI::Option* add_space(CLI::App* verb, Space& space) {
-    return verb->add_option_function<std::string>("--space", [&space](const std::string& s) { space = parse_space(s); },
-               "What the file's codes mean: auto (8 and 16 bit: sRGB, float: linear, unless the file says\n"
-               "otherwise), srgb, linear, or data (never decoded: normals, masks, heights)")
+    return verb
+        ->add_option_function<std::string>(
+            "--space", [&space](const std::string& s) { space = parse_space(s); },
+            "What the file's codes mean: auto (8 and 16 bit: sRGB, float: linear, unless the file says\n"
+            "otherwise), srgb, linear, or data (never decoded: normals, masks, heights)")
         ->type_name("auto|srgb|linear|data");
 }
 
 CLI::Option* add_depth(CLI::App* verb, std::optional<Depth>& depth) {
-    return verb->add_option_function<std::string>("--depth", [&depth](const std::string& s) { depth = parse_depth(s); },
-               "Depth of the output; default: that of the input, or the nearest the format holds")
+    return verb
+        ->add_option_function<std::string>(
+            "--depth", [&depth](const std::string& s) { depth = parse_depth(s); },
+            "Depth of the output; default: that of the input, or the nearest the format holds")
         ->type_name("u8|u16|f16|f32");
 }
 
 CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge) {
-    return verb->add_option_function<std::string>("--edge", [&edge](const std::string& s) { edge = parse_edge(s); },
-               "What lies outside the image; reflect repeats the border sample, renormalize (the default)\n"
-               "leaves it out and rescales the other weights")
+    return verb
+        ->add_option_function<std::string>(
+            "--edge", [&edge](const std::string& s) { edge = parse_edge(s); },
+            "What lies outside the image; reflect repeats the border sample, renormalize (the default)\n"
+            "leaves it out and rescales the other weights")
         ->type_name("clamp|reflect|wrap|zero|renormalize");
 }
 
@@ -87,8 +93,8 @@ CLI::Option* add_quiet(CLI::App* verb) { return verb->add_flag("--quiet", quiet,
 
 Size parse_size(const std::string& option, const std::string& text) {
     const auto refuse = [&]() -> Size {
-        throw UsageError(fmt::format("{}: \"{}\" is no size; write WIDTHxHEIGHT, as 1920x1080, each from 1 to 2147483647",
-                                     option, text));
+        throw UsageError(fmt::format(
+            "{}: \"{}\" is no size; write WIDTHxHEIGHT, as 1920x1080, each from 1 to 2147483647", option, text));
     };
     Size size;
     const char* const end = text.data() + text.size();

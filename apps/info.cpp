@@ -36,9 +36,10 @@ void run(const Options& options) {
     fmt::print("  size      {} x {}\n", info.width, info.height);
     fmt::print("  channels  {} ({})\n", info.channels(), fmt::join(info.channel_names, " "));
     fmt::print("  depth     {}\n", name_of(info.depth));
-    if (info.alpha >= 0) fmt::print("  alpha     {}\n", info.associated ? "associated (premultiplied)" : "unassociated (straight)");
-    fmt::print("  colour    {}, read as {}{}\n", info.color_hint.empty() ? "no hint" : info.color_hint, name_of(info.transfer),
-               info.has_foreign_profile ? " (ICC profile kept)" : "");
+    if (info.alpha >= 0)
+        fmt::print("  alpha     {}\n", info.associated ? "associated (premultiplied)" : "unassociated (straight)");
+    fmt::print("  colour    {}, read as {}{}\n", info.color_hint.empty() ? "no hint" : info.color_hint,
+               name_of(info.transfer), info.has_foreign_profile ? " (ICC profile kept)" : "");
     fmt::print("  levels    {}\n", info.levels);
     if (info.subimages > 1) fmt::print("  images    {} (the first is used)\n", info.subimages);
     if (info.orientation != 1) fmt::print("  turned    upright from orientation {}\n", info.orientation);
@@ -52,7 +53,8 @@ void add_info(Program& program) {
                                       "bandlimit info examples/coffee.png");
     verb->add_option("FILE", options->file, "Image to look at")->required();
     add_json(verb, options->json);
-    program.on(verb, [] {}, [options] { run(*options); });
+    program.on(
+        verb, [] {}, [options] { run(*options); });
 }
 
 }  // namespace bandlimit::app

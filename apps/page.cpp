@@ -55,9 +55,9 @@ Page::Page(std::string title, std::string introduction)
 void Page::section(const std::string& title, const std::string& text, const Citation& source) {
     ++sections_;
     contents_ += fmt::format("<li><a href=\"#s{}\">{}</a></li>\n", sections_, escaped(title));
-    body_ += fmt::format("<h2 id=\"s{}\">{}. {}</h2>\n<p>{}</p>\n<p class=\"source\">After {}, <i>{}</i>, {}{}.</p>\n", sections_,
-                         sections_, escaped(title), escaped(text), escaped(source.author), escaped(source.title),
-                         escaped(source.place), source.year.empty() ? "" : ", " + source.year);
+    body_ += fmt::format("<h2 id=\"s{}\">{}. {}</h2>\n<p>{}</p>\n<p class=\"source\">After {}, <i>{}</i>, {}{}.</p>\n",
+                         sections_, sections_, escaped(title), escaped(text), escaped(source.author),
+                         escaped(source.title), escaped(source.place), source.year.empty() ? "" : ", " + source.year);
 }
 
 void Page::caption(const std::string& sentence, const std::string& command) {
@@ -66,20 +66,22 @@ void Page::caption(const std::string& sentence, const std::string& command) {
 }
 
 void Page::figure(const std::string& file, const std::string& sentence, const std::string& command, int width) {
-    body_ += fmt::format("<figure><img src=\"{}\" width=\"{}\" alt=\"{}\" loading=\"lazy\">", file, width, escaped(sentence));
+    body_ += fmt::format("<figure><img src=\"{}\" width=\"{}\" alt=\"{}\" loading=\"lazy\">", file, width,
+                         escaped(sentence));
     caption(sentence, command);
 }
 
 void Page::gallery(const std::vector<Tile>& tiles, const std::string& sentence, const std::string& command, int width) {
     body_ += "<figure><div class=\"tiles\">";
     for (const Tile& tile : tiles)
-        body_ += fmt::format("<div><img src=\"{}\" width=\"{}\" alt=\"{}\">{}</div>", tile.file, width, escaped(tile.caption),
-                             escaped(tile.caption));
+        body_ += fmt::format("<div><img src=\"{}\" width=\"{}\" alt=\"{}\">{}</div>", tile.file, width,
+                             escaped(tile.caption), escaped(tile.caption));
     body_ += "</div>";
     caption(sentence, command);
 }
 
-void Page::table(const std::vector<std::vector<std::string>>& rows, const std::string& sentence, const std::string& command) {
+void Page::table(const std::vector<std::vector<std::string>>& rows, const std::string& sentence,
+                 const std::string& command) {
     body_ += "<figure><table>";
     const char* cell = "th";
     for (const auto& row : rows) {
@@ -100,8 +102,10 @@ std::string Page::html() const {
         numbers += fmt::format("<div><b>{}</b>{}</div>\n", escaped(h.value), escaped(h.what));
     return fmt::format(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>{}</title>\n<style>{}</style></head>\n"
-        "<body><h1>{}</h1>\n<p>{}</p>\n<div class=\"numbers\">{}</div>\n<ol class=\"contents\">{}</ol>\n{}</body></html>\n",
+        "<meta name=\"viewport\" content=\"width=device-width, "
+        "initial-scale=1\"><title>{}</title>\n<style>{}</style></head>\n"
+        "<body><h1>{}</h1>\n<p>{}</p>\n<div class=\"numbers\">{}</div>\n<ol "
+        "class=\"contents\">{}</ol>\n{}</body></html>\n",
         escaped(title_), style, escaped(title_), escaped(introduction_), numbers, contents_, body_);
 }
 

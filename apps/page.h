@@ -25,7 +25,8 @@ public:
     };
     void gallery(const std::vector<Tile>& tiles, const std::string& sentence, const std::string& command, int width);
     /// The first row is the head.
-    void table(const std::vector<std::vector<std::string>>& rows, const std::string& sentence, const std::string& command);
+    void table(const std::vector<std::vector<std::string>>& rows, const std::string& sentence,
+               const std::string& command);
     /// A number worth repeating at the top of the page and at the end of the program's output.
     void headline(const std::string& what, const std::string& value);
 

@@ -24,8 +24,9 @@ void gather(View<const float> from, int y, std::vector<float>& row) {
 void write_picture(const std::string& path, View<const float> linear, Depth depth) {
     const bool is_linear = abilities_of(path).is_linear || !is_integer(depth);
     const int alpha = linear.channels == 2 || linear.channels == 4 ? linear.channels - 1 : -1;
-    const ImageTarget target{linear.width, linear.height, names_of(linear.channels), depth, alpha,
-                             is_linear ? Transfer::linear : Transfer::srgb, false, nullptr};
+    const ImageTarget target{linear.width, linear.height, names_of(linear.channels),
+                             depth,        alpha,         is_linear ? Transfer::linear : Transfer::srgb,
+                             false,        nullptr};
     ImageWriter writer(path, target);
     AnyImage stored = make_image(depth, linear.width, 1, linear.channels);
     std::vector<float> row;

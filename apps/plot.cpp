@@ -215,7 +215,8 @@ void run_gnuplot(const std::string& commands, const std::string& path, AtomicFil
 void check_plot_format(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);
-    if (!is_svg(path) && !path.ends_with(".png")) fail("plot \"", path, "\" is no kind of file that is drawn; end the name in .svg or .png");
+    if (!is_svg(path) && !path.ends_with(".png"))
+        fail("plot \"", path, "\" is no kind of file that is drawn; end the name in .svg or .png");
 }
 
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height) {

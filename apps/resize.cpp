@@ -34,7 +34,8 @@ struct Rectangle {
 Rectangle parse_region(const std::string& text) {
     const std::vector<double> n = parse_numbers("--region", text);
     if (n.size() != 4 || n[2] <= 0 || n[3] <= 0)
-        throw UsageError(fmt::format("--region: \"{}\" is no region; write X,Y,WIDTH,HEIGHT in source pixels, as 10,20,300,200", text));
+        throw UsageError(fmt::format(
+            "--region: \"{}\" is no region; write X,Y,WIDTH,HEIGHT in source pixels, as 10,20,300,200", text));
     return {n[0], n[1], n[2], n[3]};
 }
 
@@ -51,9 +52,12 @@ std::array<double, 3> parse_background(const std::string& text) {
 void check(const Options& o) {
     const int sizes = !o.size.empty() + !o.scale.empty() + (o.width > 0 || o.height > 0);
     if (sizes != 1)
-        throw UsageError("resize: a new size is given no times or twice; give one of --size WxH, --scale S, or --width W and/or --height H");
+        throw UsageError(
+            "resize: a new size is given no times or twice; give one of --size WxH, --scale S, or --width W and/or "
+            "--height H");
     if (!o.size.empty()) parse_size("--size", o.size);
-    if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0)) throw UsageError("--scale: a size cannot be 0 or less; pass a number above 0, as 0.5 or 2");
+    if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0))
+        throw UsageError("--scale: a size cannot be 0 or less; pass a number above 0, as 0.5 or 2");
     if (!(o.antiring >= 0 && o.antiring <= 1))  // a range check of the parser lets NaN pass
         throw UsageError(fmt::format("--antiring: {} is out of range; pass 0 to 1", o.antiring));
     if (!o.region.empty()) parse_region(o.region);
@@ -64,7 +68,8 @@ void check(const Options& o) {
 
 int rounded_length(double length) {
     const double rounded = std::max(1.0, std::floor(length + 0.5));
-    if (!(rounded <= 2147483647)) throw UsageError(fmt::format("the new size would be {:.6g} pixels long; the limit is 2147483647", length));
+    if (!(rounded <= 2147483647))
+        throw UsageError(fmt::format("the new size would be {:.6g} pixels long; the limit is 2147483647", length));
     return static_cast<int>(rounded);
 }
 
@@ -82,8 +87,8 @@ Rectangle source_region(const Options& o, const ImageInfo& info) {
     if (o.region.empty()) return {0, 0, double(info.width), double(info.height)};
     const Rectangle r = parse_region(o.region);
     if (r.x < 0 || r.y < 0 || r.x + r.width > info.width || r.y + r.height > info.height)
-        throw std::runtime_error(fmt::format("--region {} reaches outside {}, which is {} x {}; stay inside", o.region, o.in,
-                                             info.width, info.height));
+        throw std::runtime_error(fmt::format("--region {} reaches outside {}, which is {} x {}; stay inside", o.region,
+                                             o.in, info.width, info.height));
     return r;
 }
 
@@ -91,7 +96,8 @@ Rectangle source_region(const Options& o, const ImageInfo& info) {
 Axis target_axis(double begin, double length, int count, bool centers) {
     const Axis corners{count, begin, begin + length};
     // Pixels have a pitch of 1: as many cells as the length holds, at least one.
-    return centers ? center_aligned({std::max(1, static_cast<int>(std::lround(length))), begin, begin + length}, count) : corners;
+    return centers ? center_aligned({std::max(1, static_cast<int>(std::lround(length))), begin, begin + length}, count)
+                   : corners;
 }
 
 ResizeOptions resize_options(const Options& o) {
@@ -119,7 +125,8 @@ struct Output {
 };
 
 Transfer output_transfer(Space space, const ImageInfo& in, const FormatAbilities& format, Depth depth) {
-    if (space == Space::data || space == Space::linear || format.is_linear || !is_integer(depth)) return Transfer::linear;
+    if (space == Space::data || space == Space::linear || format.is_linear || !is_integer(depth))
+        return Transfer::linear;
     if (space == Space::automatic && is_integer(in.depth)) return in.transfer;
     return Transfer::srgb;
 }
@@ -128,8 +135,9 @@ std::vector<float> background_of(const Options& o, const Encoding& source, int c
     const std::array<double, 3> codes = parse_background(o.background);
     const bool is_grey = codes[0] == codes[1] && codes[1] == codes[2];
     if (colours != 3 && !(colours == 1 && is_grey))
-        throw std::runtime_error(fmt::format("--background {} does not fit {} colour channels of {}; use a grey for grey pictures",
-                                             o.background, colours, o.in));
+        throw std::runtime_error(
+            fmt::format("--background {} does not fit {} colour channels of {}; use a grey for grey pictures",
+                        o.background, colours, o.in));
     std::vector<float> linear;
     for (int c = 0; c < colours; ++c)
         linear.push_back(static_cast<float>(decode(source.transfer, codes[static_cast<std::size_t>(c)])));
@@ -144,12 +152,15 @@ Output output_of(const Options& o, const ImageReader& reader, Size size) {
                 o.space == Space::data, &reader.metadata()},
                {}};
     if (in.alpha >= 0 && !o.background.empty()) {
-        out.background = background_of(o, in.encoding(o.space == Space::data ? Space::linear : o.space), in.channels() - 1);
+        out.background =
+            background_of(o, in.encoding(o.space == Space::data ? Space::linear : o.space), in.channels() - 1);
         out.target.channel_names.erase(out.target.channel_names.begin() + in.alpha);
         out.target.alpha = -1;
     } else if (in.alpha >= 0 && !format.alpha) {
-        throw std::runtime_error(fmt::format("{} has an alpha channel, which {} files cannot hold; lay it over a colour with "
-                                             "--background RRGGBB, or write .png", o.in, format.name));
+        throw std::runtime_error(
+            fmt::format("{} has an alpha channel, which {} files cannot hold; lay it over a colour with "
+                        "--background RRGGBB, or write .png",
+                        o.in, format.name));
     }
     return out;
 }
@@ -167,8 +178,18 @@ Resizer make_resizer(const Options& o, const Grid& src, const Grid& dst, int cha
 
 nlohmann::ordered_json report_of(const Options& o, const ImageInfo& in, const ImageTarget& out, const Resizer& resizer,
                                  const ResizeOptions& options, const StreamReport& stream) {
-    return {{"input", {{"file", o.in}, {"width", in.width}, {"height", in.height}, {"channels", in.channels()}, {"depth", name_of(in.depth)}}},
-            {"output", {{"file", o.out}, {"width", out.width}, {"height", out.height}, {"channels", out.channel_names.size()}, {"depth", name_of(out.depth)}}},
+    return {{"input",
+             {{"file", o.in},
+              {"width", in.width},
+              {"height", in.height},
+              {"channels", in.channels()},
+              {"depth", name_of(in.depth)}}},
+            {"output",
+             {{"file", o.out},
+              {"width", out.width},
+              {"height", out.height},
+              {"channels", out.channel_names.size()},
+              {"depth", name_of(out.depth)}}},
             {"kernel", {{"x", resizer.kernel_x()}, {"y", resizer.kernel_y()}}},
             {"edge", name_of(options.edge)},
             {"align", o.centers ? "centers" : "corners"},
@@ -198,7 +219,11 @@ void run(const Options& o) {
 
     ImageWriter writer(o.out, out.target, o.parallel.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
-    if (o.space == Space::data && !options.premultiply) from.alpha = to.alpha = -1;  // a channel like the others
+    if (o.space == Space::data) {  // alpha is a channel like the others, unless it was asked for
+        from.alpha = options.premultiply ? in.alpha : -1;
+        from.associated = in.associated;
+        to.alpha = options.premultiply ? out.target.alpha : -1;
+    }
     stream_resize(resizer, reader, from, writer, to, out.target, out.background, o.parallel, stream);
     watch.time(stream.write, [&] { writer.finish(); });
     if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
@@ -209,38 +234,58 @@ void run(const Options& o) {
 
 void add_resize(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("resize", "Resample an image: in linear light, without bleeding, shift or aliasing",
-                                      "bandlimit resize examples/coffee.png half.png --scale 0.5");
+    CLI::App* verb =
+        program.add_verb("resize", "Resample an image: in linear light, without bleeding, shift or aliasing",
+                         "bandlimit resize examples/coffee.png half.png --scale 0.5");
     verb->add_option("IN", o->in, "Image to read")->required();
     verb->add_option("OUT", o->out, "Image to write; the extension names the format")->required();
     verb->add_option("--size", o->size, "New size")->type_name("WxH");
-    verb->add_option("--width", o->width, "New width; the height follows unless given")->check(CLI::Range(1, 2147483647))->type_name("W");
-    verb->add_option("--height", o->height, "New height; the width follows unless given")->check(CLI::Range(1, 2147483647))->type_name("H");
+    verb->add_option("--width", o->width, "New width; the height follows unless given")
+        ->check(CLI::Range(1, 2147483647))
+        ->type_name("W");
+    verb->add_option("--height", o->height, "New height; the width follows unless given")
+        ->check(CLI::Range(1, 2147483647))
+        ->type_name("H");
     verb->add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3")->type_name("S");
     verb->add_option("--kernel", o->kernel,
                      "Kernel (bandlimit analyze --list), or a taps.json; auto: lanczos3 along an axis that shrinks,\n"
-                     "mitchell along one that grows")->type_name("K|auto");
+                     "mitchell along one that grows")
+        ->type_name("K|auto");
     add_edge(verb, o->edge);
-    verb->add_option_function<std::string>("--align", [o](const std::string& s) {
-            if (s != "corners" && s != "centers") throw UsageError("--align: \"" + s + "\" is unknown; choose corners or centers");
-            o->centers = s == "centers";
-        }, "What both images share: their corners (default), or the centres of their first and last\n"
-           "samples, which other libraries call align_corners")->type_name("corners|centers");
-    verb->add_option("--region", o->region, "Part of the source to resample, in source pixels, fractions allowed;\n"
-                     "what lies around it contributes at its borders")->type_name("X,Y,W,H");
+    verb->add_option_function<std::string>(
+            "--align",
+            [o](const std::string& s) {
+                if (s != "corners" && s != "centers")
+                    throw UsageError("--align: \"" + s + "\" is unknown; choose corners or centers");
+                o->centers = s == "centers";
+            },
+            "What both images share: their corners (default), or the centres of their first and last\n"
+            "samples, which other libraries call align_corners")
+        ->type_name("corners|centers");
+    verb->add_option("--region", o->region,
+                     "Part of the source to resample, in source pixels, fractions allowed;\n"
+                     "what lies around it contributes at its borders")
+        ->type_name("X,Y,W,H");
     verb->add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1")->type_name("A");
     add_space(verb, o->space);
-    verb->add_option_function<std::string>("--alpha", [o](const std::string& s) {
-            if (s != "premultiply" && s != "straight") throw UsageError("--alpha: \"" + s + "\" is unknown; choose premultiply or straight");
-            o->premultiply = s == "premultiply";
-        }, "premultiply (default): transparent texels do not bleed, and come out with colour 0;\n"
-           "straight: every channel by itself (default for --space data)")->type_name("premultiply|straight");
-    verb->add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")->type_name("RRGGBB");
+    verb->add_option_function<std::string>(
+            "--alpha",
+            [o](const std::string& s) {
+                if (s != "premultiply" && s != "straight")
+                    throw UsageError("--alpha: \"" + s + "\" is unknown; choose premultiply or straight");
+                o->premultiply = s == "premultiply";
+            },
+            "premultiply (default): transparent texels do not bleed, and come out with colour 0;\n"
+            "straight: every channel by itself (default for --space data)")
+        ->type_name("premultiply|straight");
+    verb->add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")
+        ->type_name("RRGGBB");
     add_depth(verb, o->depth);
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
     add_quiet(verb);
-    program.on(verb, [o] { check(*o); }, [o] { run(*o); });
+    program.on(
+        verb, [o] { check(*o); }, [o] { run(*o); });
 }
 
 }  // namespace bandlimit::app

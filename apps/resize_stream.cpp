@@ -18,7 +18,8 @@ std::uint64_t row_bytes(int width, std::size_t channels, Depth depth) {
 class SourceBand {
 public:
     SourceBand(ImageReader& reader, int capacity)
-        : reader_(reader), image_(make_image(reader.info().depth, reader.info().width, capacity, reader.info().channels())) {}
+        : reader_(reader),
+          image_(make_image(reader.info().depth, reader.info().width, capacity, reader.info().channels())) {}
 
     /// Makes rows [range) the content of the band.
     void hold(IndexRange range) {
@@ -35,10 +36,12 @@ public:
 
 private:
     void move_rows(int from, int count) {
-        std::visit([&](auto& image) {
-            const auto v = image.view();
-            std::copy(&v(0, from), &v(0, from) + count * v.dy, &v(0, 0));
-        }, image_);
+        std::visit(
+            [&](auto& image) {
+                const auto v = image.view();
+                std::copy(&v(0, from), &v(0, from) + count * v.dy, &v(0, 0));
+            },
+            image_);
     }
 
     ImageReader& reader_;
@@ -71,7 +74,8 @@ int largest_band(const Resizer& resizer, int rows, int target_height) {
 }  // namespace
 
 void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& from, ImageWriter& writer,
-                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel, StreamReport& report) {
+                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background,
+                   Parallel parallel, StreamReport& report) {
     const ImageInfo& in = reader.info();
     const std::uint64_t source_row = row_bytes(in.width, in.channel_names.size(), in.depth);
     const std::uint64_t target_row = row_bytes(target.width, target.channel_names.size(), target.depth);
@@ -88,8 +92,7 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
         const AnyView out_rows = rows_of(view_of(out), 0, count);
         watch.time(report.read, [&] { band.hold(resizer.rows_needed(y, y + count)); });
         watch.time(report.filter, [&] {
-            if (resizer.run(band.rows(from), {out_rows, y, to, background}, parallel))
-                report.lost_non_finite = true;
+            if (resizer.run(band.rows(from), {out_rows, y, to, background}, parallel)) report.lost_non_finite = true;
         });
         watch.time(report.write, [&] { writer.write_rows(const_view(out_rows)); });
         progress.advance_to(y + count);

@@ -13,9 +13,10 @@ struct StreamReport {
     bool lost_non_finite = false;  ///< NaN or infinity became the code 0
 };
 
-/// Resizes all rows of `reader`, whose codes mean `from`, into `writer`, where they shall mean `to`. Memory: a few tens of MiB, or the rows that a few output rows need, if that
-/// is more; under Edge::wrap the whole source.
+/// Resizes all rows of `reader`, whose codes mean `from`, into `writer`, where they shall mean `to`. Memory: a few tens
+/// of MiB, or the rows that a few output rows need, if that is more; under Edge::wrap the whole source.
 void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& from, ImageWriter& writer,
-                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel, StreamReport& report);
+                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background,
+                   Parallel parallel, StreamReport& report);
 
 }  // namespace bandlimit::app

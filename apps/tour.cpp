@@ -21,8 +21,9 @@ std::filesystem::path output_directory(const std::string& name) {
     std::error_code error;
     std::filesystem::create_directory(path, error);
     if (error || !std::filesystem::is_directory(path))
-        throw std::runtime_error(fmt::format("{}: cannot be made a directory ({}); give a path in an existing directory that you may write to",
-                                             name, error ? error.message() : "it is a file"));
+        throw std::runtime_error(fmt::format(
+            "{}: cannot be made a directory ({}); give a path in an existing directory that you may write to", name,
+            error ? error.message() : "it is a file"));
     return path;
 }
 
@@ -35,13 +36,16 @@ void write_file(const std::string& path, std::string_view content) {
 void run(const Options& options) {
     Tour tour{output_directory(options.directory), options.parallel,
               Page("A tour of bandlimit",
-                   "What goes wrong when pictures are resampled, why, and what it looks like when it is right. Every figure and number on this page was "
+                   "What goes wrong when pictures are resampled, why, and what it looks like when it is right. Every "
+                   "figure and number on this page was "
                    "computed by bandlimit; below each stands the command that makes it, to be run in this directory.")};
     for (const EmbeddedFile& photo : embedded_photographs())
         write_file(tour.path(photo.name), {reinterpret_cast<const char*>(photo.bytes), photo.size});
     tour.page.figure("overview.png",
-                     "A zone plate halved by a box, which leaves false rings; by the wrong radial Lanczos, which sharpens and lets aliases through; "
-                     "and by Lanczos-3 along each axis.", "", 784);
+                     "A zone plate halved by a box, which leaves false rings; by the wrong radial Lanczos, which "
+                     "sharpens and lets aliases through; "
+                     "and by Lanczos-3 along each axis.",
+                     "", 784);
     using Part = void (*)(Tour&);
     const Part parts[] = {tour_lanczos, tour_grids, tour_splines, tour_images};
     Progress progress("tour", std::size(parts));
@@ -59,12 +63,14 @@ void run(const Options& options) {
 
 void add_tour(Program& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("tour", "Write a page of figures and numbers that show what resampling does, right and wrong",
-                                      "bandlimit tour out");
+    CLI::App* verb =
+        program.add_verb("tour", "Write a page of figures and numbers that show what resampling does, right and wrong",
+                         "bandlimit tour out");
     verb->add_option("DIR", options->directory, "Directory to write index.html and its pictures to")->required();
     add_threads(verb, options->parallel);
     add_quiet(verb);
-    program.on(verb, [] {}, [options] { run(*options); });
+    program.on(
+        verb, [] {}, [options] { run(*options); });
 }
 
 }  // namespace bandlimit::app

@@ -22,8 +22,12 @@ struct Contender {
     Kernel kernel;
 };
 std::vector<Contender> contenders() {
-    return {{"box", "box", box()}, {"tent", "tent", tent()}, {"mitchell", "mitchell", mitchell()},
-            {"lanczos3", "lanczos3", lanczos(3)}, {"jinc3", "jinc3", jinc_lanczos(3)}, {"radial-lanczos3 (wrong)", "radial-lanczos3", radial_lanczos(3)}};
+    return {{"box", "box", box()},
+            {"tent", "tent", tent()},
+            {"mitchell", "mitchell", mitchell()},
+            {"lanczos3", "lanczos3", lanczos(3)},
+            {"jinc3", "jinc3", jinc_lanczos(3)},
+            {"radial-lanczos3 (wrong)", "radial-lanczos3", radial_lanczos(3)}};
 }
 
 /// Mean square of `image` minus `mean` over the pixels that `counts` admits.
@@ -64,17 +68,21 @@ Image<float> side_by_side(const std::vector<Image<float>>& images) {
 
 /// The picture that stands for all: what goes wrong, and what is right.
 void overview(const Tour& tour) {
-    const Image<float> source = render(with_range(zone_plate({size, size}), 0.05, 0.95), size, size, Sampling::point(), tour.parallel);
+    const Image<float> source =
+        render(with_range(zone_plate({size, size}), 0.05, 0.95), size, size, Sampling::point(), tour.parallel);
     std::vector<Image<float>> halves;
     for (const Kernel& kernel : {box(), radial_lanczos(3), lanczos(3)})
-        halves.push_back(resample(source.view(), half, half, {.reconstruction = kernel, .edge = Edge::reflect}, tour.parallel));
+        halves.push_back(
+            resample(source.view(), half, half, {.reconstruction = kernel, .edge = Edge::reflect}, tour.parallel));
     write_picture(tour.path("overview.png"), side_by_side(halves).view());
 }
 
 void zone_plate_part(Tour& tour) {
     tour.page.section("A zone plate, halved",
-                      "The frequency grows with the distance from the centre and reaches the Nyquist frequency of the source at the border, so the outer half "
-                      "must vanish when the picture is halved: every ring seen there is an alias. The exact answer is known: the same signal behind an ideal "
+                      "The frequency grows with the distance from the centre and reaches the Nyquist frequency of the "
+                      "source at the border, so the outer half "
+                      "must vanish when the picture is halved: every ring seen there is an alias. The exact answer is "
+                      "known: the same signal behind an ideal "
                       "low-pass, one integral per row and column.",
                       filters);
     const Signal signal = with_range(zone_plate({size, size}), 0.05, 0.95);
@@ -85,41 +93,58 @@ void zone_plate_part(Tour& tour) {
     std::vector<std::vector<std::string>> rows{{"kernel", "PSNR against the exact answer", "alias energy"}};
     std::vector<Page::Tile> tiles;
     for (const Contender& c : contenders()) {
-        const Image<float> small = resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
-        const double quality = psnr(small.view(), exact.view(), border), alias = power(small.view(), 0.5, should_be_flat) / signal_power;
+        const Image<float> small =
+            resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
+        const double quality = psnr(small.view(), exact.view(), border),
+                     alias = power(small.view(), 0.5, should_be_flat) / signal_power;
         const std::string file = fmt::format("zoneplate-{}.png", c.file);
         write_picture(tour.path(file), small.view());
         tiles.push_back({file, fmt::format("{}: {:.1f} dB, alias {}", c.name, quality, decibels(alias))});
         rows.push_back({c.name, fmt::format("{:.2f} dB", quality), decibels(alias)});
         if (c.kernel.name == "lanczos3" || c.kernel.name == "box")
-            tour.page.headline(fmt::format("zone plate halved by {}, against the exact answer", c.name), fmt::format("{:.2f} dB", quality));
+            tour.page.headline(fmt::format("zone plate halved by {}, against the exact answer", c.name),
+                               fmt::format("{:.2f} dB", quality));
     }
     write_picture(tour.path("zoneplate-exact.png"), exact.view());
     tiles.push_back({"zoneplate-exact.png", "exact: ideal low-pass"});
-    const std::string command = "bandlimit pattern zoneplate zoneplate.exr --size 512x512\nbandlimit resize zoneplate.exr half.png --scale 0.5 --kernel lanczos3";
-    tour.page.gallery(tiles, "The zone plate at half its size; look at the corners and the middle of each side.", command, 256);
-    tour.page.table(rows, "PSNR leaves out 5 % at the border. Alias energy is the power where the picture should be flat (from 1.25 times the new Nyquist "
-                          "frequency on), relative to that of the signal.", "");
+    const std::string command =
+        "bandlimit pattern zoneplate zoneplate.exr --size 512x512\nbandlimit resize zoneplate.exr half.png --scale 0.5 "
+        "--kernel lanczos3";
+    tour.page.gallery(tiles, "The zone plate at half its size; look at the corners and the middle of each side.",
+                      command, 256);
+    tour.page.table(rows,
+                    "PSNR leaves out 5 % at the border. Alias energy is the power where the picture should be flat "
+                    "(from 1.25 times the new Nyquist "
+                    "frequency on), relative to that of the signal.",
+                    "");
 }
 
 void star_part(Tour& tour) {
-    tour.page.section("A Siemens star, halved",
-                      "Spokes at all angles: what a filter does to edges of every direction, and how much of the fine middle survives without false "
-                      "patterns. The reference is the star itself behind an ideal low-pass, from 16 x 16 samples per pixel.",
-                      filters);
+    tour.page.section(
+        "A Siemens star, halved",
+        "Spokes at all angles: what a filter does to edges of every direction, and how much of the fine middle "
+        "survives without false "
+        "patterns. The reference is the star itself behind an ideal low-pass, from 16 x 16 samples per pixel.",
+        filters);
     const Signal star = siemens_star({size, size});
     const Image<float> source = render(star, size, size, Sampling::supersampled(lanczos(3), 8), tour.parallel);
     Image<float> exact(half, half);
-    render(star, {{half, 0, size}, {half, 0, size}}, Sampling::supersampled(kaiser(16, 8), 16), exact.view(), tour.parallel);
+    render(star, {{half, 0, size}, {half, 0, size}}, Sampling::supersampled(kaiser(16, 8), 16), exact.view(),
+           tour.parallel);
     std::vector<Page::Tile> tiles;
     for (const Contender& c : contenders()) {
-        const Image<float> small = resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
+        const Image<float> small =
+            resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
         const std::string file = fmt::format("siemens-{}.png", c.file);
         write_picture(tour.path(file), small.view());
         tiles.push_back({file, fmt::format("{}: {:.1f} dB", c.name, psnr(small.view(), exact.view(), border))});
     }
-    tour.page.gallery(tiles, "The star at half its size, with PSNR against the ideal low-pass (which rings at hard edges: it is a yardstick, not a goal for the eye).",
-                      "bandlimit pattern siemens star.png --size 512x512 --antialias lanczos3\nbandlimit resize star.png half.png --scale 0.5 --kernel mitchell", 256);
+    tour.page.gallery(tiles,
+                      "The star at half its size, with PSNR against the ideal low-pass (which rings at hard edges: it "
+                      "is a yardstick, not a goal for the eye).",
+                      "bandlimit pattern siemens star.png --size 512x512 --antialias lanczos3\nbandlimit resize "
+                      "star.png half.png --scale 0.5 --kernel mitchell",
+                      256);
 }
 
 double mean_of(View<const float> image) {
@@ -131,10 +156,12 @@ double mean_of(View<const float> image) {
 
 void photograph_part(Tour& tour) {
     tour.page.section("A photograph, halved in linear light and in codes",
-                      "The codes of a picture file are not amounts of light. Averaging them makes fine contrast darker than the scene was; averaging light "
+                      "The codes of a picture file are not amounts of light. Averaging them makes fine contrast darker "
+                      "than the scene was; averaging light "
                       "does not.",
                       {"B. Wronski", "How (not) to test graphics algorithms", "bartwronski.com", "2019"});
-    const Image<float> photo = read_picture(tour.path("gravel.png"), Space::srgb), codes = read_picture(tour.path("gravel.png"), Space::linear);
+    const Image<float> photo = read_picture(tour.path("gravel.png"), Space::srgb),
+                       codes = read_picture(tour.path("gravel.png"), Space::linear);
     const Image<float> light = resample(photo.view(), half / 2, half / 2, {}, tour.parallel);
     Image<float> dark = resample(codes.view(), half / 2, half / 2, {}, tour.parallel);
     const View<float> v = dark.view();
@@ -143,11 +170,18 @@ void photograph_part(Tour& tour) {
     write_picture(tour.path("photo-light.png"), light.view());
     write_picture(tour.path("photo-codes.png"), dark.view());
     const double before = mean_of(photo.view());
-    const auto change = [&](const Image<float>& image) { return fmt::format("{:+.2f} %", 100 * (mean_of(image.view()) / before - 1)); };
-    tour.page.gallery({{"photo-light.png", "in linear light: mean light " + change(light)}, {"photo-codes.png", "in codes: mean light " + change(dark)}},
-                      "Gravel at a quarter of its size: averaged as light it stays as bright as it was, averaged as codes it darkens.",
-                      "bandlimit resize gravel.png light.png --scale 0.25\nbandlimit resize gravel.png codes.png --scale 0.25 --space linear", 384);
-    tour.page.headline("mean light of a photograph quartered in linear light / in codes", change(light) + " / " + change(dark));
+    const auto change = [&](const Image<float>& image) {
+        return fmt::format("{:+.2f} %", 100 * (mean_of(image.view()) / before - 1));
+    };
+    tour.page.gallery({{"photo-light.png", "in linear light: mean light " + change(light)},
+                       {"photo-codes.png", "in codes: mean light " + change(dark)}},
+                      "Gravel at a quarter of its size: averaged as light it stays as bright as it was, averaged as "
+                      "codes it darkens.",
+                      "bandlimit resize gravel.png light.png --scale 0.25\nbandlimit resize gravel.png codes.png "
+                      "--scale 0.25 --space linear",
+                      384);
+    tour.page.headline("mean light of a photograph quartered in linear light / in codes",
+                       change(light) + " / " + change(dark));
 }
 
 }  // namespace

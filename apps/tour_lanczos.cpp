@@ -24,11 +24,14 @@ Series samples_of(const Kernel& kernel, int reach) {
 }
 
 void no_op(Tour& tour) {
-    tour.page.section("Lanczos leaves samples alone, unless it is applied to the distance",
-                      "In one dimension the kernel is 1 at its own sample and 0 at all others: centred on a sample it changes nothing. "
-                      "Applied per axis it keeps that in two dimensions. Applied to the distance from the centre it does not: the corners "
-                      "of the 3 x 3 neighbourhood lie at the distance sqrt(2), in the negative lobe, and the picture is sharpened.",
-                      lanczos_2d);
+    tour.page.section(
+        "Lanczos leaves samples alone, unless it is applied to the distance",
+        "In one dimension the kernel is 1 at its own sample and 0 at all others: centred on a sample it changes "
+        "nothing. "
+        "Applied per axis it keeps that in two dimensions. Applied to the distance from the centre it does not: the "
+        "corners "
+        "of the 3 x 3 neighbourhood lie at the distance sqrt(2), in the negative lobe, and the picture is sharpened.",
+        lanczos_2d);
     const Kernel kernel = lanczos(2);
     Panel panel{.title = "", .x_label = "samples from the centre", .y_label = "weight", .series = {}};
     panel.series = {curve("lanczos2", -2.5, 2.5, 401, kernel.value), samples_of(kernel, 2)};
@@ -43,11 +46,16 @@ void no_op(Tour& tour) {
         rows.push_back({fmt::format("y = {}", y)});
         for (int x = -1; x <= 1; ++x) rows.back().push_back(fmt::format("{:.4f}", wrong.value(std::hypot(x, y)) + 0.0));
     }
-    tour.page.table(rows, fmt::format("Weights of the wrong radial Lanczos-2 around a sample, before they are divided by their sum of {:.4f}: "
-                                      "the corners are negative.", weights.sum),
-                    "bandlimit analyze radial-lanczos2 --phase 0 --json");
+    tour.page.table(
+        rows,
+        fmt::format(
+            "Weights of the wrong radial Lanczos-2 around a sample, before they are divided by their sum of {:.4f}: "
+            "the corners are negative.",
+            weights.sum),
+        "bandlimit analyze radial-lanczos2 --phase 0 --json");
     const double gain_axis = std::abs(response(PlacedWeights2D(weights, 0, 0), 0.5, 0));
-    tour.page.headline("gain of radial Lanczos-2 on samples, at Nyquist along x (a no-op would have 1)", fmt::format("{:.3f}", gain_axis));
+    tour.page.headline("gain of radial Lanczos-2 on samples, at Nyquist along x (a no-op would have 1)",
+                       fmt::format("{:.3f}", gain_axis));
 }
 
 struct Peak {
@@ -71,33 +79,49 @@ Panel profile_panel(const std::string& title, const std::vector<Kernel>& kernels
 
 Kernel cut_off(std::string name, double radius, double (*value)(double)) {
     const Kernel separable = truncated_sinc(radius);
-    return {std::move(name), radius, [=](double r) { return std::abs(r) < radius ? value(r) : 0; }, Kernel::Form::radial, separable.knots};
+    return {std::move(name), radius, [=](double r) { return std::abs(r) < radius ? value(r) : 0; },
+            Kernel::Form::radial, separable.knots};
 }
 
 void profiles(Tour& tour) {
     tour.page.section("Radial profiles: sinc, jinc, and Lanczos right and wrong",
-                      "The ideal radial low-pass is the jinc, whose transform is a disc. The transform of a radial sinc rises towards infinity at "
-                      "the Nyquist frequency, and windowing it into a radial Lanczos keeps the rise. Windowing the jinc gives a low-pass. The form "
+                      "The ideal radial low-pass is the jinc, whose transform is a disc. The transform of a radial "
+                      "sinc rises towards infinity at "
+                      "the Nyquist frequency, and windowing it into a radial Lanczos keeps the rise. Windowing the "
+                      "jinc gives a low-pass. The form "
                       "printed most often jumps at its radius; scaled to the zeros of the jinc it ends in zero.",
                       lanczos_2d);
     // Cut where the integral over the disc is that of the whole plane, or its share at 0 would be far off.
-    const Kernel sinc16 = cut_off("radial sinc, cut at 16.5", 16.5, sinc), jinc16 = cut_off("jinc, cut at 15.75", 15.75, jinc);
-    tour.page.figure(tour.plot("profiles.svg",
-                               {profile_panel("ideal forms, cut off", {sinc16, jinc16}),
-                                profile_panel("wrong: 1D Lanczos of the distance", {radial_lanczos(2), radial_lanczos(3)}),
-                                profile_panel("right: windowed jinc", {jinc_lanczos(2), jinc_lanczos(3), jinc_lanczos_unscaled(2), jinc_lanczos_unscaled(3)})},
-                               1080, 340),
-                     "The wrong radial Lanczos boosts what lies below the cut-off and lets through what lies above; the windowed jinc does neither.",
-                     "bandlimit analyze radial-lanczos3 --frequency 0,0.1,0.2,0.3,0.38,0.5 --plot radial-lanczos3.svg", 1040);
+    const Kernel sinc16 = cut_off("radial sinc, cut at 16.5", 16.5, sinc),
+                 jinc16 = cut_off("jinc, cut at 15.75", 15.75, jinc);
+    tour.page.figure(
+        tour.plot("profiles.svg",
+                  {profile_panel("ideal forms, cut off", {sinc16, jinc16}),
+                   profile_panel("wrong: 1D Lanczos of the distance", {radial_lanczos(2), radial_lanczos(3)}),
+                   profile_panel("right: windowed jinc", {jinc_lanczos(2), jinc_lanczos(3), jinc_lanczos_unscaled(2),
+                                                          jinc_lanczos_unscaled(3)})},
+                  1080, 340),
+        "The wrong radial Lanczos boosts what lies below the cut-off and lets through what lies above; the windowed "
+        "jinc does neither.",
+        "bandlimit analyze radial-lanczos3 --frequency 0,0.1,0.2,0.3,0.38,0.5 --plot radial-lanczos3.svg", 1040);
     const Peak two = peak_of(radial_lanczos(2)), three = peak_of(radial_lanczos(3));
     tour.page.table({{"kernel", "largest gain", "at cycles per sample", "gain at Nyquist"},
-                     {"radial-lanczos2", fmt::format("{:.3f}", two.gain), fmt::format("{:.3f}", two.frequency), fmt::format("{:.3f}", relative_spectrum(radial_lanczos(2), 0.5))},
-                     {"radial-lanczos3", fmt::format("{:.3f}", three.gain), fmt::format("{:.3f}", three.frequency), fmt::format("{:.3f}", relative_spectrum(radial_lanczos(3), 0.5))},
-                     {"jinc2", fmt::format("{:.3f}", peak_of(jinc_lanczos(2)).gain), fmt::format("{:.3f}", peak_of(jinc_lanczos(2)).frequency), fmt::format("{:.3f}", relative_spectrum(jinc_lanczos(2), 0.5))},
-                     {"jinc3", fmt::format("{:.3f}", peak_of(jinc_lanczos(3)).gain), fmt::format("{:.3f}", peak_of(jinc_lanczos(3)).frequency), fmt::format("{:.3f}", relative_spectrum(jinc_lanczos(3), 0.5))}},
-                    "Peaks of the profiles: 1 would be no boost at all.", "bandlimit analyze radial-lanczos2 --frequency 0.296");
-    tour.page.headline("peak gain of the wrong radial Lanczos-2, at 0.296 cycles per sample", fmt::format("{:.3f}", two.gain));
-    tour.page.headline("peak gain of the wrong radial Lanczos-3, at 0.380 cycles per sample", fmt::format("{:.3f}", three.gain));
+                     {"radial-lanczos2", fmt::format("{:.3f}", two.gain), fmt::format("{:.3f}", two.frequency),
+                      fmt::format("{:.3f}", relative_spectrum(radial_lanczos(2), 0.5))},
+                     {"radial-lanczos3", fmt::format("{:.3f}", three.gain), fmt::format("{:.3f}", three.frequency),
+                      fmt::format("{:.3f}", relative_spectrum(radial_lanczos(3), 0.5))},
+                     {"jinc2", fmt::format("{:.3f}", peak_of(jinc_lanczos(2)).gain),
+                      fmt::format("{:.3f}", peak_of(jinc_lanczos(2)).frequency),
+                      fmt::format("{:.3f}", relative_spectrum(jinc_lanczos(2), 0.5))},
+                     {"jinc3", fmt::format("{:.3f}", peak_of(jinc_lanczos(3)).gain),
+                      fmt::format("{:.3f}", peak_of(jinc_lanczos(3)).frequency),
+                      fmt::format("{:.3f}", relative_spectrum(jinc_lanczos(3), 0.5))}},
+                    "Peaks of the profiles: 1 would be no boost at all.",
+                    "bandlimit analyze radial-lanczos2 --frequency 0.296");
+    tour.page.headline("peak gain of the wrong radial Lanczos-2, at 0.296 cycles per sample",
+                       fmt::format("{:.3f}", two.gain));
+    tour.page.headline("peak gain of the wrong radial Lanczos-3, at 0.380 cycles per sample",
+                       fmt::format("{:.3f}", three.gain));
 }
 
 }  // namespace

@@ -37,15 +37,18 @@ bool is_close(float a, float b, int taps) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes bytes{data, size};
     const auto list = kernel_list();
-    const Kernel kernel = parse_kernel(list[static_cast<std::size_t>(bytes.below(static_cast<int>(list.size())))].example);
+    const Kernel kernel =
+        parse_kernel(list[static_cast<std::size_t>(bytes.below(static_cast<int>(list.size())))].example);
     if (is_radial(kernel)) return 0;
-    const int inputs = 1 + bytes.below(64), outputs = 1 + bytes.below(64), height = 1 + bytes.below(20), channels = 1 + bytes.below(5);
+    const int inputs = 1 + bytes.below(64), outputs = 1 + bytes.below(64), height = 1 + bytes.below(20),
+              channels = 1 + bytes.below(5);
     const Edge edge = all_edges()[static_cast<std::size_t>(bytes.below(5))];
     const double begin = bytes.below(16) / 16.0, length = (1 + bytes.below(32)) / 16.0, antiring = bytes.below(3) / 2.0;
     try {
         const Bank bank = make_bank(kernel, Axis{inputs}, Axis{outputs, begin, begin + length}, edge);
         Image<float> src(inputs, height, channels, bytes.below(2) ? Layout::interleaved : Layout::planar);
-        Image<float> fast(outputs, height, channels, bytes.below(2) ? Layout::interleaved : Layout::planar), exact(outputs, height, channels);
+        Image<float> fast(outputs, height, channels, bytes.below(2) ? Layout::interleaved : Layout::planar),
+            exact(outputs, height, channels);
         Random random(static_cast<std::uint64_t>(bytes.below(256)));
         for (int c = 0; c < channels; ++c)
             for (int y = 0; y < height; ++y)

@@ -46,8 +46,8 @@ inline float from_code(std::uint16_t code) { return static_cast<float>(code) / 6
 
 /// Value to code: clamped to [0, 1] and rounded to nearest. What is not finite becomes 0.
 ///
-/// The product is exact in double for every float, so the rounding is that of the exact value. Written without branches,
-/// for loops over rows.
+/// The product is exact in double for every float, so the rounding is that of the exact value. Written without
+/// branches, for loops over rows.
 template <class Code>
 Code to_code(double value) {
     constexpr double largest = std::numeric_limits<Code>::max(), infinity = std::numeric_limits<double>::infinity();

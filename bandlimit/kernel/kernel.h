@@ -21,11 +21,13 @@ struct Kernel {
         nearest     ///< the one sample whose cell holds the position; never widened
     };
 
-    std::string name;                     ///< as parse_kernel() reads it
-    double radius = 0;                    ///< exact: value is 0 beyond
-    std::function<double(double)> value;  ///< any finite argument; at a jump the mean of both sides if not said otherwise, or as published
+    std::string name;   ///< as parse_kernel() reads it
+    double radius = 0;  ///< exact: value is 0 beyond
+    std::function<double(double)>
+        value;  ///< any finite argument; at a jump the mean of both sides if not said otherwise, or as published
     Form form = Form::separable;
-    std::vector<double> knots;  ///< borders in (0, radius) between which value is smooth, and not too wavy, for quadrature
+    std::vector<double>
+        knots;  ///< borders in (0, radius) between which value is smooth, and not too wavy, for quadrature
 };
 
 Kernel nearest();  ///< the nearest sample; of two equally near ones the one at the higher index

@@ -39,8 +39,8 @@ bool has_contiguous_lanes(const View<T>& v) {
 
 constexpr int tile_lanes = 32;  // two vectors of 512 bits; 4096 of them are 512 KiB
 
-/// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where channels
-/// are interleaved and the run starts a pixel, else single samples.
+/// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where
+/// channels are interleaved and the run starts a pixel, else single samples.
 template <class T, class Copy>
 void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
     for (int k = 0; k < count;) {
@@ -57,7 +57,8 @@ void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
     }
 }
 
-/// Some lanes of an image at every x, side by side: the transposition that lets a horizontal filter run the vertical loop.
+/// Some lanes of an image at every x, side by side: the transposition that lets a horizontal filter run the vertical
+/// loop.
 class Tile {
 public:
     explicit Tile(int lanes) : lanes_(lanes) {}

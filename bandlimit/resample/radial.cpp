@@ -12,7 +12,8 @@ namespace {
 constexpr double table_density = 4096;  // entries per unit: linear interpolation errs by f'' / (8 * 4096^2) < 1e-7
 
 void check_radial(const char* function, const Kernel& kernel) {
-    if (!is_radial(kernel)) fail(function, ": ", kernel.name, " is separable; use make_bank, or a radial kernel such as jinc3");
+    if (!is_radial(kernel))
+        fail(function, ": ", kernel.name, " is separable; use make_bank, or a radial kernel such as jinc3");
 }
 
 /// The integers within `radius` of `center`.
@@ -48,7 +49,12 @@ struct RadialBank::Disc {
 
 RadialBank::RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y,
                        Edge edge)
-    : x_(src_x, dst_x), y_(src_y, dst_y), width_(src_x.count), height_(src_y.count), outputs_(dst_x.count), edge_(edge),
+    : x_(src_x, dst_x),
+      y_(src_y, dst_y),
+      width_(src_x.count),
+      height_(src_y.count),
+      outputs_(dst_x.count),
+      edge_(edge),
       radius_(kernel.radius) {
     check_radial("RadialBank", kernel);
     const auto entries = static_cast<std::size_t>(std::ceil(radius_ * table_density)) + 2;
@@ -129,7 +135,8 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
         }
         const double divisor = edge_ == Edge::renormalize ? read : disc.sum;
         if (!(std::abs(divisor) > 1e-9))
-            fail("RadialBank: output (", i, ", ", y, ") has no weight inside the source; use Edge::clamp, or axes that overlap");
+            fail("RadialBank: output (", i, ", ", y,
+                 ") has no weight inside the source; use Edge::clamp, or axes that overlap");
         for (std::size_t c = 0; c < sums.size(); ++c) {
             const float value = static_cast<float>(static_cast<double>(sums[c]) / divisor);
             const bool limit = antiring > 0 && has_near;

@@ -29,22 +29,25 @@ RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double pha
 /// Weights are normalised for each output; under renormalize and zero samples outside are left out (zero keeps the
 /// weights of the whole disc as the divisor). The kernel is read from a table with linear interpolation.
 ///
-/// error   of the table: below 1e-7 of the peak; sums are fused multiply-adds in float, row by row: the same bits for any
+/// error   of the table: below 1e-7 of the peak; sums are fused multiply-adds in float, row by row: the same bits for
+/// any
 ///         number of threads and any part of the target
-/// cost    about 4 radius^2 multiply-adds per sample and channel (radius after widening), and as many table look-ups per
+/// cost    about 4 radius^2 multiply-adds per sample and channel (radius after widening), and as many table look-ups
+/// per
 ///         pair of distinct phases; no vector instructions
 /// throws  Error for a separable kernel, and as Mapping
 class RadialBank {
 public:
-    RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y, Edge edge);
+    RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y,
+               Edge edge);
 
     /// The rows of the source [begin, end) that output rows [first, last) read; they may lie outside it.
     IndexRange rows_read(int first, int last) const;
     int source_height() const { return height_; }
     Edge edge() const { return edge_; }
 
-    /// Computes output row y from source rows with interleaved channels: rows[v] for each v of rows_read(y, y + 1), where
-    /// rows that `edge` does not read may be null.
+    /// Computes output row y from source rows with interleaved channels: rows[v] for each v of rows_read(y, y + 1),
+    /// where rows that `edge` does not read may be null.
     void row(int y, ConstLines rows, int channels, float antiring, float* out) const;
 
 private:

@@ -13,14 +13,16 @@
 namespace bandlimit {
 namespace {
 
-constexpr int block_rows = 16;     // output rows computed together
-constexpr int smallest_run = 64;   // output rows per thread: each run decodes the rows above it once more
+constexpr int block_rows = 16;    // output rows computed together
+constexpr int smallest_run = 64;  // output rows per thread: each run decodes the rows above it once more
 
 /// Rows of interleaved floats, side by side.
 class Rows {
 public:
     Rows(int count, std::size_t length)
-        : length_(length), samples_(static_cast<std::size_t>(count) * length), pointers_(static_cast<std::size_t>(count)) {
+        : length_(length),
+          samples_(static_cast<std::size_t>(count) * length),
+          pointers_(static_cast<std::size_t>(count)) {
         for (std::size_t i = 0; i < pointers_.size(); ++i) pointers_[i] = samples_.data() + i * length_;
     }
     std::span<float> operator[](int i) { return {pointers_[static_cast<std::size_t>(i)], length_}; }
@@ -30,7 +32,7 @@ public:
     /// Rows [first, first + count) as an image.
     View<float> view(int first, int count, int width, int channels) {
         return {pointers_[static_cast<std::size_t>(first)], width, count, channels, channels,
-                static_cast<std::ptrdiff_t>(length_), 1};
+                static_cast<std::ptrdiff_t>(length_),       1};
     }
 
 private:
@@ -154,7 +156,10 @@ template <class Plan>
 class Run {
 public:
     Run(const Plan& plan, const SourceRows& source, const TargetRows& target)
-        : plan_(plan), source_(source), target_(target), window_(plan.row_length(plan.x_first ? plan.dst.x : plan.src.x)),
+        : plan_(plan),
+          source_(source),
+          target_(target),
+          window_(plan.row_length(plan.x_first ? plan.dst.x : plan.src.x)),
           decoded_(plan.x_first ? block_rows : 0, plan.row_length(plan.src.x)),
           middle_(plan.x_first || plan.radial ? 0 : block_rows, plan.row_length(plan.src.x)),
           out_(block_rows, plan.row_length(plan.dst.x)) {}
@@ -219,8 +224,7 @@ private:
 
     bool store(std::span<const float> row, int i) {
         const int y = i - target_.first_row;
-        if (target_.background.empty())
-            return encode_row(row, premultiplied(), target_.samples, y, target_.encoding);
+        if (target_.background.empty()) return encode_row(row, premultiplied(), target_.samples, y, target_.encoding);
         const auto colours = static_cast<std::size_t>(plan_.channels - 1);
         std::vector<float> opaque(static_cast<std::size_t>(plan_.dst.x.count) * colours);
         composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque);
@@ -292,17 +296,18 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
     const int out_channels = plan_->channels - (target.background.empty() ? 0 : 1);
     if (from.width != plan_->src.x.count || to.width != plan_->dst.x.count || from.channels != plan_->channels ||
         to.channels != out_channels)
-        fail("Resizer::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width, " with ",
-             to.channels, "; need ", plan_->src.x.count, " with ", plan_->channels, " and ", plan_->dst.x.count, " with ",
-             out_channels);
-    if (!target.background.empty() && (source.encoding.alpha < 0 || target.background.size() != static_cast<std::size_t>(out_channels)))
+        fail("Resizer::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
+             " with ", to.channels, "; need ", plan_->src.x.count, " with ", plan_->channels, " and ",
+             plan_->dst.x.count, " with ", out_channels);
+    if (!target.background.empty() &&
+        (source.encoding.alpha < 0 || target.background.size() != static_cast<std::size_t>(out_channels)))
         fail("Resizer::run: a background of ", target.background.size(), " channels; it needs an alpha channel and ",
              out_channels, " values");
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
     if (needed.begin < source.first_row || needed.end > source.first_row + from.height)
-        fail("Resizer::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ", needed.begin,
-             " to ", needed.end, " are needed");
+        fail("Resizer::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
+             needed.begin, " to ", needed.end, " are needed");
     std::atomic<bool> lost = false;
     const int share = (to.height + parallel.count() - 1) / parallel.count();
     parallel_for(to.height, std::max(share, smallest_run), parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

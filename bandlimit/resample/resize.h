@@ -56,9 +56,9 @@ struct TargetRows {
 
 /// A resampling ready to run on blocks of rows, so that neither image need be in memory.
 ///
-/// Rows are decoded to linear float, filtered along both axes, and encoded, a few at a time, by contiguous runs of output
-/// rows per thread. Which axis is filtered first depends on the scale factors alone: parts of an image have the bits of
-/// the whole. Radial kernels filter both at once.
+/// Rows are decoded to linear float, filtered along both axes, and encoded, a few at a time, by contiguous runs of
+/// output rows per thread. Which axis is filtered first depends on the scale factors alone: parts of an image have the
+/// bits of the whole. Radial kernels filter both at once.
 ///
 /// memory   per thread: the source rows that 16 output rows read, and 48 rows of floats
 /// error    as combine(), once per axis; u8 and u16 are the nearest codes of the float result
@@ -67,8 +67,8 @@ public:
     /// throws  Error as make_bank and Mapping, for antiring outside 0..1, and for channels < 1
     Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options = {});
     ~Resizer();
-    /// About how much memory such a Resizer takes, its runs by so many threads included, in bytes: known before anything
-    /// is allocated. Throws Error as Mapping.
+    /// About how much memory such a Resizer takes, its runs by so many threads included, in bytes: known before
+    /// anything is allocated. Throws Error as Mapping.
     static std::uint64_t bytes(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options,
                                Parallel parallel);
     Resizer(Resizer&&) noexcept;

@@ -47,7 +47,8 @@ template <class T>
 void run(benchmark::State& state, const Case& c) {
     const Image<T> src = random_image<T>(c.width, c.height, c.channels);
     Image<T> dst(c.new_width, c.new_height, c.channels, Layout::interleaved);
-    const Resizer resizer({{c.width}, {c.height}}, {{c.new_width}, {c.new_height}}, c.channels, {.reconstruction = c.kernel});
+    const Resizer resizer({{c.width}, {c.height}}, {{c.new_width}, {c.new_height}}, c.channels,
+                          {.reconstruction = c.kernel});
     const Parallel parallel{static_cast<int>(state.range(0))};
     double seconds = 0;
     for (auto _ : state) {
@@ -57,7 +58,10 @@ void run(benchmark::State& state, const Case& c) {
         state.SetIterationTime(taken);
         seconds += taken;
     }
-    const auto bytes = [&](int w, int h) { return sizeof(T) * static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c.channels); };
+    const auto bytes = [&](int w, int h) {
+        return sizeof(T) * static_cast<std::size_t>(w) * static_cast<std::size_t>(h) *
+               static_cast<std::size_t>(c.channels);
+    };
     const std::size_t read = bytes(c.width, c.height), written = bytes(c.new_width, c.new_height);
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(read + written));
     state.counters["floor_ms"] = 1e3 * copy_seconds(read, written);
@@ -76,7 +80,8 @@ BENCHMARK_CAPTURE(u8, b_1000x700_codes_lanczos3, Case{4096, 4096, 1000, 700, 4, 
 BENCHMARK_CAPTURE(u8, c_double_codes_lanczos3, Case{1920, 1080, 3840, 2160, 4, lanczos(3), codes})->Apply(setup);
 BENCHMARK_CAPTURE(f32, d_half_float_lanczos3, Case{4096, 4096, 2048, 2048, 1, lanczos(3), linear})->Apply(setup);
 BENCHMARK_CAPTURE(u8, e_half_codes_box, Case{4096, 4096, 2048, 2048, 4, box(), codes})->Apply(setup);
-BENCHMARK_CAPTURE(u8, g_half_linear_light_lanczos3, Case{4096, 4096, 2048, 2048, 4, lanczos(3), srgb_alpha})->Apply(setup);
+BENCHMARK_CAPTURE(u8, g_half_linear_light_lanczos3, Case{4096, 4096, 2048, 2048, 4, lanczos(3), srgb_alpha})
+    ->Apply(setup);
 
 }  // namespace
 }  // namespace bandlimit
