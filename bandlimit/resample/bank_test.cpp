@@ -431,5 +431,19 @@ TEST(Taps, MustFitTheAxes) {
     EXPECT_EQ(shifted.first(2), 8);
 }
 
+TEST(Bank, BytesAreNoLessThanItTakes) {
+    for (const auto& [in, out] :
+         {std::pair{5, 2}, {2, 5}, {903, 451}, {1, 1000}, {1000, 1}, {4096, 2048}, {10007, 10009}})
+        for (const Edge edge : {Edge::clamp, Edge::renormalize}) {
+            const Axis src{in, 0, 1}, dst{out, 0, 1};
+            const Bank bank = make_bank(lanczos(3), src, dst, edge);
+            const std::size_t taken = bank.outputs.size() * sizeof(Bank::Output) +
+                                      bank.rows.size() * sizeof(Bank::Row) + bank.weights.size() * sizeof(float);
+            EXPECT_GE(bank_bytes(3, src, dst), taken) << in << " to " << out;
+        }
+    // Shared phases count once.
+    EXPECT_LT(bank_bytes(3, Axis{1 << 20, 0, 1}, Axis{1 << 19, 0, 1}), (1u << 19) * sizeof(Bank::Output) + (1u << 16));
+}
+
 }  // namespace
 }  // namespace bandlimit
