@@ -36,11 +36,11 @@ void tour_splines(Tour& tour) {
     const Interpolation interpolations[] = {
         {"linear (tent)", tent()}, {"quadratic B-spline", quadratic_bspline()}, {"cubic B-spline", bspline()}};
     std::vector<Panel> panels;
-    for (const auto& [title, kernel] : interpolations) {
-        Panel panel{.title = title, .x_label = "cycles per sample", .y_label = "gain", .series = {}};
+    for (const Interpolation& i : interpolations) {
+        Panel panel{.title = i.title, .x_label = "cycles per sample", .y_label = "gain", .series = {}};
         for (const Phase& phase : phases)
             panel.series.push_back(curve(std::string("offset ") + phase.name, 0, 0.5, 101,
-                                         [&](double f) { return gain(at_phase(kernel, phase.value), f); }));
+                                         [&](double f) { return gain(at_phase(i.kernel, phase.value), f); }));
         panels.push_back(panel);
     }
     tour.page.figure(tour.plot("splines-responses.svg", panels, 1080, 340),
@@ -49,17 +49,18 @@ void tour_splines(Tour& tour) {
                      "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --plot bspline.svg", 1040);
 
     Panel variances{.title = "", .x_label = "offset from a sample", .y_label = "variance kept", .series = {}};
-    for (const auto& [title, kernel] : interpolations)
-        variances.series.push_back(curve(title, 0, 1, 121, [&](double p) { return variance(at_phase(kernel, p)); }));
+    for (const Interpolation& i : interpolations)
+        variances.series.push_back(
+            curve(i.title, 0, 1, 121, [&](double p) { return variance(at_phase(i.kernel, p)); }));
     tour.page.figure(tour.plot("splines-variance.svg", {variances}, 720, 320),
                      "Sum of the squared weights, by which the variance of noise is scaled, over the offset.",
                      "bandlimit analyze tent --phase 0,0.25,0.5,0.75", 720);
 
     std::vector<std::vector<std::string>> rows{{"kernel", "offset 0", "1/6", "1/3", "1/2"}};
-    for (const auto& [title, kernel] : interpolations) {
-        rows.push_back({title});
+    for (const Interpolation& i : interpolations) {
+        rows.push_back({i.title});
         for (const Phase& phase : phases)
-            rows.back().push_back(fmt::format("{:.5f}", variance(at_phase(kernel, phase.value))));
+            rows.back().push_back(fmt::format("{:.5f}", variance(at_phase(i.kernel, phase.value))));
     }
     tour.page.table(rows, "Variance at the four offsets.", "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --json");
     tour.page.headline("variance kept by linear interpolation on a sample, and halfway",

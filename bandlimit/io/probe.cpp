@@ -69,6 +69,39 @@ std::uint64_t jpeg_memory(std::FILE* file) {
     }
 }
 
+/// Reads up to and including a zero byte; the length before it, or -1 where the file or `limit` ends first.
+int skip_text(std::FILE* file, int limit) {
+    for (int length = 0; length <= limit; ++length) {
+        const int byte = std::fgetc(file);
+        if (byte == EOF) return -1;
+        if (byte == 0) return length;
+    }
+    return -1;
+}
+
+/// Refuses an EXR file with an attribute that is longer than the file: OpenEXR makes room for it before it reads.
+void check_exr_attributes(std::FILE* file, std::uint64_t bytes, const std::string& path) {
+    constexpr int longest_name = 255;
+    constexpr int several_parts = 0x10;  // in the second byte of the version
+    std::fseek(file, 5, SEEK_SET);
+    const int flags = std::fgetc(file);
+    const bool has_parts = flags != EOF && (flags & several_parts) != 0;
+    std::fseek(file, 8, SEEK_SET);
+    // Name, type, length, content; an empty name ends a header, and in files of several parts two of them end the last.
+    for (bool was_empty = !has_parts;;) {
+        const int name = skip_text(file, longest_name);
+        if (name < 0 || (name == 0 && was_empty)) return;
+        was_empty = name == 0 || !has_parts;
+        if (name == 0) continue;
+        std::array<unsigned char, 4> size{};
+        if (skip_text(file, longest_name) < 0 || std::fread(size.data(), 1, size.size(), file) != size.size()) return;
+        const std::uint64_t length = size[0] | size[1] << 8 | size[2] << 16 | std::uint64_t{size[3]} << 24;
+        if (length > bytes)
+            fail_file(path, "claims an attribute of ", length, " bytes and has ", bytes, "; the file is damaged");
+        std::fseek(file, static_cast<long>(length), SEEK_CUR);
+    }
+}
+
 /// Deflate spends at least one bit on a length and one on a distance of at most 258 bytes.
 constexpr std::uint64_t deflate_expansion = 1032;
 /// A code of at most 12 bits stands for a string that is one longer than another code's: at most 4096 bytes.
@@ -107,6 +140,7 @@ Probe probe(const std::string& path) {
     constexpr std::size_t png_interlace = 28;  // signature, chunk head, sizes, depth, colour type, two methods
     found.is_interlaced = found.format == "png" && size > png_interlace && head[png_interlace] != 0;
     if (found.format == "jpeg") found.memory_to_open = jpeg_memory(file.get());
+    if (found.format == "openexr") check_exr_attributes(file.get(), found.bytes, path);
     if (found.format == "pnm") found.memory_to_open = found.bytes;
     return found;
 }
