@@ -73,28 +73,47 @@ std::string clauses(const Series& series, std::size_t index) {
     return {};
 }
 
-/// Names that fit side by side above a panel.
-constexpr int pixels_per_label = 150;
+/// How the legend of a panel is laid out.
+struct Legend {
+    std::size_t labels = 0, lines = 0;
+};
 
-/// Rows that the legend of the fullest panel takes; all panels leave room for as many, so that their axes align.
-int legend_rows(const std::vector<Panel>& panels, int columns) {
-    std::ptrdiff_t rows = 0;
-    for (const Panel& panel : panels) {
-        const auto labels =
-            std::count_if(panel.series.begin(), panel.series.end(), [](const Series& s) { return !s.label.empty(); });
-        rows = std::max(rows, (labels + columns - 1) / columns);
+/// As many entries on a line as fit below a panel of this many pixels.
+Legend legend_of(const Panel& panel, double panel_width) {
+    constexpr double letter = 7, sample = 45;  // pixels, of the fonts below
+    Legend legend;
+    std::size_t longest = 0;
+    for (const Series& series : panel.series) {
+        legend.labels += !series.label.empty();
+        longest = std::max(longest, series.label.size());
     }
-    return static_cast<int>(rows);
+    const auto fitting = static_cast<std::size_t>(panel_width / (letter * static_cast<double>(longest) + sample));
+    const std::size_t columns = std::max<std::size_t>(1, fitting);
+    legend.lines = (legend.labels + columns - 1) / columns;
+    return legend;
 }
 
-/// Two entries on a line.
-std::size_t legend_lines(const Panel& panel) {
-    const auto labelled = std::count_if(panel.series.begin(), panel.series.end(),
-                                        [](const Series& series) { return !series.label.empty(); });
-    return static_cast<std::size_t>(labelled + 1) / 2;
+/// Pixels around the axes, the same for all panels, so that they line up.
+struct Frame {
+    double left = 75, right = 20, between = 95, top = 16, bottom = 80;
+    double panel_width = 0, legend = 0;
+};
+
+Frame frame_of(const std::vector<Panel>& panels, int width) {
+    Frame frame;
+    const auto count = static_cast<double>(panels.size());
+    frame.panel_width = (width - frame.left - frame.right - (count - 1) * frame.between) / count;
+    std::size_t lines = 0;
+    for (const Panel& panel : panels) {
+        if (!panel.title.empty()) frame.top = 44;
+        lines = std::max(lines, legend_of(panel, frame.panel_width).lines);
+    }
+    frame.legend = legend_line * static_cast<double>(lines);
+    frame.bottom += frame.legend;
+    return frame;
 }
 
-std::string panel_commands(const Panel& panel, int height) {
+std::string panel_commands(const Panel& panel, const Frame& frame, int height) {
     std::string text = "set title " + quoted(panel.title) + "\nset xlabel " + quoted(panel.x_label) + "\nset ylabel " +
                        quoted(panel.y_label) + "\n" + range("x", panel.x_range) + range("y", panel.y_range);
     std::string plot;
@@ -102,22 +121,12 @@ std::string panel_commands(const Panel& panel, int height) {
         text += data_block(panel.series[i], i);
         plot += (i ? ", " : "plot ") + clauses(panel.series[i], i);
     }
-    const std::size_t lines = legend_lines(panel);
-    text += lines == 0 ? "unset key\n"
-                       : fmt::format("set key center top at graph 0.5, screen {:.4f} vertical maxrows {} samplen 1.5\n",
-                                     (legend_line * static_cast<double>(lines) + 6) / height, lines);
+    const Legend legend = legend_of(panel, frame.panel_width);
+    text += legend.lines == 0
+                ? "unset key\n"
+                : fmt::format("set key center top at graph 0.5, screen {:.4f} vertical maxrows {} samplen 1.5\n",
+                              (frame.legend + 6) / height, legend.lines);
     return text + plot + "\n";
-}
-
-/// Room around the axes, the same for all panels, so that they line up.
-std::string margins(const std::vector<Panel>& panels, int width, int height) {
-    std::size_t lines = 0;
-    for (const Panel& panel : panels) lines = std::max(lines, legend_lines(panel));
-    const bool has_titles =
-        std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.title.empty(); });
-    const double bottom = 58 + legend_line * static_cast<double>(lines), top = has_titles ? 34 : 14;
-    return fmt::format("set multiplot layout 1,{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing {:.4f}\n", panels.size(),
-                       75.0 / width, 1 - 20.0 / width, bottom / height, 1 - top / height, 95.0 / width);
 }
 
 std::string script(const std::vector<Panel>& panels, const std::string& path, int width, int height) {
@@ -128,12 +137,11 @@ std::string script(const std::vector<Panel>& panels, const std::string& path, in
         "set tics nomirror out scale 0.5 textcolor rgb \"#333333\"\n"
         "set grid lc rgb \"#dddddd\" lt 1 lw 0.6\n"
         "set xzeroaxis lt 1 lw 0.8 lc rgb \"#999999\"\n";
-    const int columns = std::max(1, width / static_cast<int>(panels.size()) / pixels_per_label);
-    text += fmt::format("set key above center horizontal samplen 1.5 spacing 1.1 maxcols {}\n", columns);
-    text += fmt::format("set lmargin 8\nset rmargin 2\nset bmargin 4\nset tmargin {}\n",
-                        2.5 + 1.4 * legend_rows(panels, columns));
-    text += margins(panels, width, height);
-    for (const Panel& panel : panels) text += panel_commands(panel, height);
+    const Frame frame = frame_of(panels, width);
+    text += fmt::format("set multiplot layout 1,{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing {:.4f}\n", panels.size(),
+                        frame.left / width, 1 - frame.right / width, frame.bottom / height, 1 - frame.top / height,
+                        frame.between / width);
+    for (const Panel& panel : panels) text += panel_commands(panel, frame, height);
     return text + "unset multiplot\n";
 }
 

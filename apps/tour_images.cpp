@@ -162,8 +162,8 @@ void photograph_part(Tour& tour) {
                       {"B. Wronski", "How (not) to test graphics algorithms", "bartwronski.com", "2019"});
     const Image<float> photo = read_picture(tour.path("gravel.png"), Space::srgb),
                        codes = read_picture(tour.path("gravel.png"), Space::linear);
-    const Image<float> light = resample(photo.view(), half / 2, half / 2, {}, tour.parallel);
-    Image<float> dark = resample(codes.view(), half / 2, half / 2, {}, tour.parallel);
+    const Image<float> light = resample(photo.view(), half, half, {}, tour.parallel);
+    Image<float> dark = resample(codes.view(), half, half, {}, tour.parallel);
     const View<float> v = dark.view();
     for (int y = 0; y < v.height; ++y)
         for (int x = 0; x < v.width; ++x) v(x, y) = static_cast<float>(srgb_to_linear(static_cast<double>(v(x, y))));
@@ -175,12 +175,12 @@ void photograph_part(Tour& tour) {
     };
     tour.page.gallery({{"photo-light.png", "in linear light: mean light " + change(light)},
                        {"photo-codes.png", "in codes: mean light " + change(dark)}},
-                      "Gravel at a quarter of its size: averaged as light it stays as bright as it was, averaged as "
+                      "Gravel at half its size: averaged as light it stays as bright as it was, averaged as "
                       "codes it darkens.",
-                      "bandlimit resize gravel.png light.png --scale 0.25\nbandlimit resize gravel.png codes.png "
-                      "--scale 0.25 --space linear",
+                      "bandlimit resize gravel.png light.png --scale 0.5\nbandlimit resize gravel.png codes.png "
+                      "--scale 0.5 --space linear",
                       384);
-    tour.page.headline("mean light of a photograph quartered in linear light / in codes",
+    tour.page.headline("mean light of a photograph halved in linear light / in codes",
                        change(light) + " / " + change(dark));
 }
 

@@ -100,7 +100,7 @@ void profiles(Tour& tour) {
                    profile_panel("wrong: 1D Lanczos of the distance", {radial_lanczos(2), radial_lanczos(3)}),
                    profile_panel("right: windowed jinc", {jinc_lanczos(2), jinc_lanczos(3), jinc_lanczos_unscaled(2),
                                                           jinc_lanczos_unscaled(3)})},
-                  1080, 340),
+                  1080, 400),
         "The wrong radial Lanczos boosts what lies below the cut-off and lets through what lies above; the windowed "
         "jinc does neither.",
         "bandlimit analyze radial-lanczos3 --frequency 0,0.1,0.2,0.3,0.38,0.5 --plot radial-lanczos3.svg", 1040);
