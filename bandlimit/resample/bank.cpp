@@ -74,7 +74,8 @@ void append_rounded(std::vector<float>& to, std::span<const double> weights) {
     }
 }
 
-/// Collects the rows of a bank; `sum_kept` is what renormalize restores.
+/// Collects the rows of a bank: those that lie inside are shared by phase, the others cut to what the edge lets them
+/// read.
 class Builder {
 public:
     Builder(int inputs, int outputs, Edge edge) {
