@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apps/pictures.h"
 #include "apps/tour.h"
@@ -119,6 +120,13 @@ void zone_plate_part(Tour& tour) {
                     "");
 }
 
+/// Where the halved star should be flat: its spokes are at least a quarter finer than what the new grid can hold.
+bool should_be_flat_in_star(int x, int y) {
+    constexpr double spokes = 72, finest = 0.5 * 1.25;  // cycles per new sample
+    const double radius = std::hypot(x - half / 2, y - half / 2);
+    return radius * 2 * std::numbers::pi * finest < spokes;
+}
+
 void star_part(Tour& tour) {
     tour.page.section(
         "A Siemens star, halved",
@@ -137,14 +145,18 @@ void star_part(Tour& tour) {
             resample(source.view(), half, half, {.reconstruction = c.kernel, .edge = Edge::reflect}, tour.parallel);
         const std::string file = fmt::format("siemens-{}.png", c.file);
         write_picture(tour.path(file), small.view());
-        tiles.push_back({file, fmt::format("{}: {:.1f} dB", c.name, psnr(small.view(), exact.view(), border))});
+        const double alias = power(small.view(), 0.5, should_be_flat_in_star) / 0.25;
+        tiles.push_back({file, fmt::format("{}: {:.1f} dB, alias {}", c.name, psnr(small.view(), exact.view(), border),
+                                           decibels(alias))});
     }
-    tour.page.gallery(tiles,
-                      "The star at half its size, with PSNR against the ideal low-pass (which rings at hard edges: it "
-                      "is a yardstick, not a goal for the eye).",
-                      "bandlimit pattern siemens star.png --size 512x512 --antialias lanczos3\nbandlimit resize "
-                      "star.png half.png --scale 0.5 --kernel mitchell",
-                      256);
+    tour.page.gallery(
+        tiles,
+        "The star at half its size: PSNR against the ideal low-pass (which rings at hard edges: a yardstick, "
+        "not a goal for the eye), and alias energy: the power in the middle, where the spokes are at least "
+        "1.25 times too fine for the new grid.",
+        "bandlimit pattern siemens star.png --size 512x512 --antialias lanczos3\nbandlimit resize "
+        "star.png half.png --scale 0.5 --kernel mitchell",
+        256);
 }
 
 double mean_of(View<const float> image) {
