@@ -34,18 +34,22 @@ void write_file(const std::string& path, std::string_view content) {
 }
 
 void run(const Options& options) {
-    Tour tour{output_directory(options.directory), options.parallel,
-              Page("A tour of bandlimit",
-                   "What goes wrong when pictures are resampled, why, and what it looks like when it is right. Every "
-                   "figure and number on this page was "
-                   "computed by bandlimit; below each stands the command that makes it, to be run in this directory.")};
+    Tour tour{
+        output_directory(options.directory), options.parallel,
+        Page(
+            "A tour of bandlimit",
+            "What goes wrong when pictures are resampled, why, and what it looks like when it is right. Every "
+            "figure and number on this page was "
+            "computed by bandlimit; below each stand commands that make it or check it, to be run in this directory.")};
     for (const EmbeddedFile& photo : embedded_photographs())
         write_file(tour.path(photo.name), {reinterpret_cast<const char*>(photo.bytes), photo.size});
     tour.page.figure("overview.png",
                      "A zone plate halved by a box, which leaves false rings; by the wrong radial Lanczos, which "
                      "sharpens and lets aliases through; "
                      "and by Lanczos-3 along each axis.",
-                     "", 784);
+                     "bandlimit pattern zoneplate plate.exr --size 512x512 --low 0.05 --high 0.95\nbandlimit resize "
+                     "plate.exr box.png --scale 0.5 --kernel box --edge reflect",
+                     784);
     using Part = void (*)(Tour&);
     const Part parts[] = {tour_lanczos, tour_grids, tour_splines, tour_images};
     Progress progress("tour", std::size(parts));

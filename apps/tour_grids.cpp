@@ -54,7 +54,8 @@ void downsampling(Tour& tour) {
          row("[1 2 1]/4", tent_weights),
          row("lanczos3", lanczos_weights)},
         "Alias energy: the share of what white noise leaves in the result that was above the new Nyquist frequency.",
-        "");
+        "echo '{\"version\":1,\"kind\":\"box\",\"factor\":2,\"taps\":{\"first\":0,\"weights\":[0.5,0.5]}}' > "
+        "box.json\nbandlimit analyze box.json --frequency 1/8,1/4,3/8");
 }
 
 void upsampling(Tour& tour) {
@@ -81,7 +82,10 @@ void upsampling(Tour& tour) {
                     curve("[1 2 1]/4: shared centres", 0, 0.5, 201, [&](double f) { return gain(odd, f); })};
     tour.page.figure(tour.plot("doubling.svg", {panel}, 720, 330),
                      "Seen as filters on the samples with zeros in between: the even form leaves less of the replicas.",
-                     "", 720);
+                     "echo "
+                     "'{\"version\":1,\"kind\":\"even\",\"factor\":4,\"taps\":{\"first\":0,\"weights\":[0.125,0.375,0."
+                     "375,0.125]}}' > even.json\nbandlimit analyze even.json --frequency 1/8,1/4,3/8",
+                     720);
 }
 
 /// One axis of a step of a pyramid: the number of samples, and the interval they lie on.
@@ -155,10 +159,13 @@ void shifts(Tour& tour) {
                     "bandlimit resize gravel.png half.png --scale 0.5 --kernel box\nbandlimit resize half.png back.png "
                     "--scale 2 --kernel tent\n"
                     "bandlimit compare gravel.png back.png");
-    tour.page.gallery(tiles,
-                      "The same 64 x 64 pixels each time, enlarged: compare where stones meet the frame, and how sharp "
-                      "neighbouring columns are.",
-                      "", 320);
+    tour.page.gallery(
+        tiles,
+        "The same 64 x 64 pixels each time, enlarged: compare where stones meet the frame, and how sharp "
+        "neighbouring columns are.",
+        "bandlimit resize gravel.png half.png --scale 0.5 --kernel box\nbandlimit resize half.png even.png --scale 2 "
+        "--kernel tent --edge clamp\nbandlimit resize half.png odd.png --size 511x511 --kernel tent --align centers",
+        320);
 }
 
 void centers(Tour& tour) {

@@ -117,7 +117,10 @@ void zone_plate_part(Tour& tour) {
                     "PSNR leaves out 5 % at the border. Alias energy is the power where the picture should be flat "
                     "(from 1.25 times the new Nyquist "
                     "frequency on), relative to that of the signal.",
-                    "");
+                    "bandlimit pattern zoneplate plate.exr --size 512x512 --low 0.05 --high 0.95\nbandlimit resize "
+                    "plate.exr half.exr --scale 0.5 --kernel lanczos3 --edge reflect\nbandlimit pattern zoneplate "
+                    "exact.exr --size 256x256 --max-frequency 1 --low 0.05 --high 0.95 --antialias "
+                    "kaiser:80:10\nbandlimit compare half.exr exact.exr --border 12");
 }
 
 /// Where the halved star should be flat: its spokes are at least a quarter finer than what the new grid can hold.
