@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "bandlimit/core/allocator.h"
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/view.h"
 
@@ -54,7 +55,7 @@ private:
         return {data, width_, height_, channels_, 1, w, w * h};
     }
 
-    std::vector<T> samples_;
+    std::vector<T, SampleAllocator<T>> samples_;
     int width_ = 0, height_ = 0, channels_ = 1;
     Layout layout_ = Layout::planar;
 };

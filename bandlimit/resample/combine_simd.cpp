@@ -2,6 +2,8 @@
 // operations in the same order as in the scalar form. With fused multiply-add the bits are the same too.
 #include "bandlimit/resample/combine.h"
 
+#include <algorithm>
+
 #ifdef BANDLIMIT_SCALAR
 
 namespace bandlimit {
@@ -65,27 +67,30 @@ HWY_INLINE void CombineAt(D d, const Row& row, float* HWY_RESTRICT out, std::siz
     }
 }
 
-HWY_INLINE void CombineRow(const Row& row, float* HWY_RESTRICT out, std::size_t length) {
+/// Samples [k, end) of the line.
+HWY_INLINE void CombineRow(const Row& row, float* HWY_RESTRICT out, std::size_t k, std::size_t end) {
     const hn::ScalableTag<float> d;
     const hn::CappedTag<float, 1> one;  // the tail, with the same arithmetic as the vectors
     const std::size_t n = hn::Lanes(d);
-    std::size_t k = 0;
-    for (; k + 4 * n <= length; k += 4 * n) CombineAt<4>(d, row, out, k);
-    for (; k + n <= length; k += n) CombineAt<1>(d, row, out, k);
-    for (; k < length; ++k) CombineAt<1>(one, row, out, k);
+    for (; k + 4 * n <= end; k += 4 * n) CombineAt<4>(d, row, out, k);
+    for (; k + n <= end; k += n) CombineAt<1>(d, row, out, k);
+    for (; k < end; ++k) CombineAt<1>(one, row, out, k);
 }
 
 void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
-    for (int i = begin; i < end; ++i) {
-        const Bank::Row& info = bank.row_info(i);
-        const Row row{bank.weights.data() + info.offset,
-                      lines + bank.first(i),
-                      info.count,
-                      info.near_begin,
-                      info.near_count,
-                      antiring};
-        CombineRow(row, out[i - begin], length);
-    }
+    // Outputs that lie together read mostly the same lines: a strip of those stays in the first cache meanwhile.
+    constexpr std::size_t strip = 512;
+    for (std::size_t k = 0; k < length; k += strip)
+        for (int i = begin; i < end; ++i) {
+            const Bank::Row& info = bank.row_info(i);
+            const Row row{bank.weights.data() + info.offset,
+                          lines + bank.first(i),
+                          info.count,
+                          info.near_begin,
+                          info.near_count,
+                          antiring};
+            CombineRow(row, out[i - begin], k, std::min(length, k + strip));
+        }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -7,8 +7,10 @@
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/resample/apply.h"
+#include "bandlimit/resample/byte_resize.h"
 #include "bandlimit/resample/combine.h"
 #include "bandlimit/resample/radial.h"
+#include "bandlimit/resample/sliding.h"
 
 namespace bandlimit {
 namespace {
@@ -39,44 +41,6 @@ private:
     std::size_t length_;
     std::vector<float> samples_;
     std::vector<float*> pointers_;
-};
-
-/// A window of rows, by index, that slides over the source: what it holds already is not made again.
-class SlidingRows {
-public:
-    explicit SlidingRows(std::size_t length) : length_(length), rows_(0, length) {}
-
-    /// Makes the window hold `range`, calling fill(first, rows view begin, count) for runs of rows that are contiguous.
-    template <class Fill>
-    void hold(IndexRange range, Fill fill) {
-        const int wanted = range.end - range.begin;
-        if (wanted > rows_.count()) {
-            rows_ = Rows(wanted + wanted / 4, length_);
-            held_ = {range.begin, range.begin};
-        }
-        if (range.begin < held_.begin || range.begin > held_.end) held_ = {range.begin, range.begin};
-        for (int v = std::max(held_.end, range.begin); v < range.end;) {
-            const int slot = slot_of(v), count = std::min(range.end - v, rows_.count() - slot);
-            fill(v, slot, count);
-            v += count;
-        }
-        held_ = {range.begin, std::max(held_.end, range.end)};
-        // Rows further back than the window is long have been written over.
-        held_.begin = std::max(held_.begin, held_.end - rows_.count());
-    }
-
-    Rows& rows() { return rows_; }
-    const float* row(int v) const { return rows_.lines()[slot_of(v)]; }
-
-private:
-    int slot_of(int v) const {
-        const int n = rows_.count();
-        return ((v % n) + n) % n;
-    }
-
-    std::size_t length_;
-    Rows rows_;
-    IndexRange held_;
 };
 
 Bank bank_of(const Reconstruction& reconstruction, const Axis& src, const Axis& dst, Edge edge, std::string& name) {
@@ -139,10 +103,19 @@ struct Resizer::Plan {
     Bank x, y;                         ///< of separable kernels
     std::optional<RadialBank> radial;  ///< instead of both
     bool x_first = false;
+    std::optional<BytePlan> bytes;  ///< where codes of 8 bits may run in integers; refers to x and y
 
     float antiring() const { return static_cast<float>(options.antiring); }
     std::size_t row_length(const Axis& axis) const {
         return static_cast<std::size_t>(axis.count) * static_cast<std::size_t>(channels);
+    }
+    /// Whether the stored codes are what is to be filtered, and stored again as they come out.
+    bool is_plain(const Encoding& from, const TargetRows& target) const {
+        const Encoding& to = target.encoding;
+        const bool multiplied = from.alpha >= 0 && options.premultiply && !from.associated;
+        const bool converted = to.alpha >= 0 && (options.premultiply || from.associated) != to.associated;
+        return from.transfer == Transfer::linear && to.transfer == Transfer::linear && !multiplied && !converted &&
+               options.antiring == 0 && target.background.empty();
     }
     IndexRange rows_read(int first, int last) const {
         return radial ? radial->rows_read(first, last) : indices_read(y, first, last);
@@ -159,7 +132,7 @@ public:
         : plan_(plan),
           source_(source),
           target_(target),
-          window_(plan.row_length(plan.x_first ? plan.dst.x : plan.src.x)),
+          held_(0, 0),
           decoded_(plan.x_first ? block_rows : 0, plan.row_length(plan.src.x)),
           middle_(plan.x_first || plan.radial ? 0 : block_rows, plan.row_length(plan.src.x)),
           out_(block_rows, plan.row_length(plan.dst.x)) {}
@@ -178,10 +151,12 @@ public:
 private:
     void filter(int first, int last) {
         const IndexRange read = plan_.rows_read(first, last);
-        window_.hold(read, [&](int v, int slot, int count) { fill(v, slot, count); });
+        window_.hold(
+            read, [&](int slots) { held_ = Rows(slots, plan_.row_length(plan_.x_first ? plan_.dst.x : plan_.src.x)); },
+            [&](int v, int slot, int count) { fill(v, slot, count); });
         if (plan_.radial) return filter_radial(first, last, read);
         std::vector<const float*> lines;
-        for (int v = read.begin; v < read.end; ++v) lines.push_back(window_.row(v));
+        for (int v = read.begin; v < read.end; ++v) lines.push_back(held_row(v));
         const ConstLines at_zero = lines.data() - read.begin;
         if (plan_.x_first) {
             combine(plan_.y, first, last, plan_.antiring(), at_zero, out_.lines(), plan_.row_length(plan_.dst.x));
@@ -193,7 +168,7 @@ private:
 
     void filter_radial(int first, int last, IndexRange read) {
         std::vector<const float*> lines;
-        for (int v = read.begin; v < read.end; ++v) lines.push_back(window_.row(v));
+        for (int v = read.begin; v < read.end; ++v) lines.push_back(held_row(v));
         for (int i = first; i < last; ++i)
             plan_.radial->row(i, lines.data() - read.begin, plan_.channels, plan_.antiring(), out_[i - first].data());
     }
@@ -203,16 +178,18 @@ private:
               to.view(first_to, count, plan_.dst.x.count, plan_.channels), {1}, plan_.options.antiring);
     }
 
+    const float* held_row(int v) { return held_[window_.slot_of(v)].data(); }
+
     /// Makes the rows of indices [v, v + count) in slots of the window.
     void fill(int v, int slot, int count) {
         if (!plan_.x_first) {
-            for (int i = 0; i < count; ++i) load(v + i, window_.rows()[slot + i]);
+            for (int i = 0; i < count; ++i) load(v + i, held_[slot + i]);
             return;
         }
         for (int done = 0; done < count; done += block_rows) {
             const int some = std::min(block_rows, count - done);
             for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
-            filter_x(decoded_, 0, window_.rows(), slot + done, some);
+            filter_x(decoded_, 0, held_, slot + done, some);
         }
     }
 
@@ -236,8 +213,8 @@ private:
     const Plan& plan_;
     const SourceRows& source_;
     const TargetRows& target_;
-    SlidingRows window_;
-    Rows decoded_, middle_, out_;
+    SlidingWindow window_;
+    Rows held_, decoded_, middle_, out_;
 };
 
 }  // namespace
@@ -246,7 +223,7 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
     if (channels < 1) fail("Resizer: channels = ", channels, "; pass 1 or more");
     if (!(options.antiring >= 0 && options.antiring <= 1))
         fail("Resizer: antiring = ", options.antiring, "; pass 0 (off) to 1 (no overshoot)");
-    Plan plan{src, dst, channels, options, {}, {}, {}, {}, {}, false};
+    Plan plan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}};
     const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
     if (kernel && is_radial(*kernel)) {
         plan.radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge);
@@ -257,7 +234,10 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
         const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
         plan.x_first = cost(step_x, step_y) < cost(step_y, step_x);
     }
-    plan_ = std::make_unique<const Plan>(std::move(plan));
+    auto placed = std::make_unique<Plan>(std::move(plan));
+    if (!placed->radial && has_byte_vectors())
+        if (const auto banks = make_byte_banks(placed->x, placed->y)) placed->bytes = make_byte_plan(*banks);
+    plan_ = std::move(placed);
 }
 
 Resizer::~Resizer() = default;
@@ -308,11 +288,16 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
     if (needed.begin < source.first_row || needed.end > source.first_row + from.height)
         fail("Resizer::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
              needed.begin, " to ", needed.end, " are needed");
+    const auto* codes_in = std::get_if<View<const std::uint8_t>>(&source.samples);
+    const auto* codes_out = std::get_if<View<std::uint8_t>>(&target.samples);
+    const bool in_integers = plan_->bytes && codes_in && codes_out && plan_->is_plain(source.encoding, target);
     std::atomic<bool> lost = false;
     const int share = (to.height + parallel.count() - 1) / parallel.count();
     parallel_for(to.height, std::max(share, smallest_run), parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        Run<Plan> run(*plan_, source, target);
-        if (run.rows(target.first_row + static_cast<int>(begin), target.first_row + static_cast<int>(end))) lost = true;
+        const int first = target.first_row + static_cast<int>(begin), last = target.first_row + static_cast<int>(end);
+        if (in_integers)
+            return resize_bytes(*plan_->bytes, *codes_in, source.first_row, *codes_out, target.first_row, first, last);
+        if (Run<Plan>(*plan_, source, target).rows(first, last)) lost = true;
     });
     return lost;
 }

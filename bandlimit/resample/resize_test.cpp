@@ -206,7 +206,8 @@ void expect_codes_of_the_float_result(const Encoding& encoding) {
 TEST(Resizer, CodesAreThoseOfTheFloatResult) {
     for (const Encoding& encoding :
          {Encoding{Transfer::srgb, 3}, {Transfer::linear, 3}, {Transfer::srgb, -1}, {Transfer::linear, 3, true}}) {
-        expect_codes_of_the_float_result<std::uint8_t, std::uint8_t>(encoding);
+        // What u8 codes become without any decoding is in byte_resize_test.cpp: they run in integers.
+        if (!encoding.associated) expect_codes_of_the_float_result<std::uint8_t, std::uint8_t>(encoding);
         expect_codes_of_the_float_result<std::uint16_t, std::uint8_t>(encoding);
         expect_codes_of_the_float_result<std::uint16_t, std::uint16_t>(encoding);
         expect_codes_of_the_float_result<Half, Half>(encoding);

@@ -1,0 +1,124 @@
+#include "bandlimit/resample/byte_resize.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "bandlimit/core/error.h"
+#include "bandlimit/core/image.h"
+#include "bandlimit/kernel/kernel.h"
+#include "bandlimit/math/random.h"
+#include "bandlimit/resample/operator_checker_test.h"
+#include "bandlimit/resample/resize.h"
+
+namespace bandlimit {
+namespace {
+
+std::vector<Kernel> kernels() { return {nearest(), box(), tent(), catmull_rom(), mitchell(), lanczos(3), lanczos(5)}; }
+
+Image<std::uint8_t> noise(Random& random, int width, int height, int channels, Layout layout) {
+    Image<std::uint8_t> image(width, height, channels, layout);
+    // Runs of the extreme codes reach the largest sums.
+    const bool extreme = random.integer(0, 2) == 0;
+    for (std::ptrdiff_t i = 0; i < std::ptrdiff_t{width} * height * channels; ++i)
+        image.view().data[i] = static_cast<std::uint8_t>(extreme ? 255 * random.integer(0, 1) : random.integer(0, 255));
+    return image;
+}
+
+/// A view of the same samples seen from another side.
+template <class T>
+View<T> turned(View<T> v, int how) {
+    if (how & 1) v = {v.data + (v.height - 1) * v.dy, v.width, v.height, v.channels, v.dx, -v.dy, v.dc};
+    if (how & 2) v = {v.data + (v.width - 1) * v.dx, v.width, v.height, v.channels, -v.dx, v.dy, v.dc};
+    return v;
+}
+
+std::string difference(View<const std::uint8_t> a, View<const std::uint8_t> b) {
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+            for (int c = 0; c < a.channels; ++c)
+                if (a(x, y, c) != b(x, y, c))
+                    return message("at ", x, ' ', y, ' ', c, ": ", int{a(x, y, c)}, " for ", int{b(x, y, c)});
+    return {};
+}
+
+TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
+    Random random(1);
+    for (int run = 0; run < 150; ++run) {
+        const int width = random.integer(1, 300), height = random.integer(1, 90);
+        const int new_width = random.integer(1, run % 3 ? 200 : 600), new_height = random.integer(1, 100);
+        const int channels = random.integer(1, 6);
+        const Kernel kernel = kernels()[static_cast<std::size_t>(run) % kernels().size()];
+        const Edge edge = all_edges()[static_cast<std::size_t>(run / 7) % all_edges().size()];
+        const auto layout = [&] { return random.integer(0, 2) == 0 ? Layout::planar : Layout::interleaved; };
+        const Axis to_x{new_width, run % 4 == 0 ? 1.0 : 0.0, run % 4 == 0 ? 0.0 : 1.0};
+        const Bank x = make_bank(kernel, {width}, to_x, edge);
+        const Bank y = make_bank(kernel, {height}, {new_height, 0, run % 5 ? 1 : 0.7}, edge);
+        const auto banks = make_byte_banks(x, y);
+        ASSERT_TRUE(banks);
+        const Image<std::uint8_t> src = noise(random, width, height, channels, layout());
+        Image<std::uint8_t> expected(new_width, new_height, channels), found(new_width, new_height, channels, layout());
+        const View<const std::uint8_t> from = turned(src.view(), run);
+        resize_bytes_scalar(*banks, from, expected.view());
+        const BytePlan plan = make_byte_plan(*banks);
+        for_each_instruction_set([&](const std::string& target, bool) {
+            if (!has_byte_vectors()) return;
+            const int cut = random.integer(0, new_height);
+            const View<std::uint8_t> to = turned(found.view(), run / 4);
+            if (cut > 0) resize_bytes(plan, from, 0, to, 0, 0, cut);
+            if (cut < new_height) resize_bytes(plan, from, 0, to, 0, cut, new_height);
+            ASSERT_EQ(difference(to, expected.view()), "")
+                << target << ' ' << kernel.name << ' ' << name_of(edge) << ' ' << width << 'x' << height << 'x'
+                << channels << " to " << new_width << 'x' << new_height;
+        });
+    }
+}
+
+TEST(ResizeBytes, KeepsConstantsExactly) {
+    for (const Kernel& kernel : kernels())
+        for (const int size : {5, 37, 80}) {
+            const Bank bank = make_bank(kernel, {37}, {size}, Edge::renormalize);
+            const auto banks = make_byte_banks(bank, bank);
+            ASSERT_TRUE(banks);
+            for (int code = 0; code < 256; ++code) {
+                Image<std::uint8_t> src(37, 37), dst(size, size);
+                std::fill_n(src.view().data, 37 * 37, static_cast<std::uint8_t>(code));
+                resize_bytes_scalar(*banks, src.view(), dst.view());
+                for (int i = 0; i < size * size; ++i) ASSERT_EQ(dst.view().data[i], code) << kernel.name;
+            }
+        }
+}
+
+TEST(ResizeBytes, ErrsByOneCodeAtMost) {
+    Random random(2);
+    for (const Kernel& kernel : kernels())
+        for (const auto& [width, height] : {std::pair{100, 90}, {50, 45}, {27, 24}, {200, 180}, {33, 250}}) {
+            const Image<std::uint8_t> src = noise(random, 100, 90, 3, Layout::interleaved);
+            Image<float> values(100, 90, 3, Layout::interleaved), exact(width, height, 3, Layout::interleaved);
+            for (int i = 0; i < 100 * 90 * 3; ++i) values.view().data[i] = float(src.view().data[i]);
+            Image<std::uint8_t> codes(width, height, 3, Layout::interleaved);
+            const Resizer resizer({{100}, {90}}, {{width}, {height}}, 3, {.reconstruction = kernel});
+            resizer.run({View<const float>(values.view()), 0, {}}, {exact.view(), 0, {}, {}});
+            resizer.run({View<const std::uint8_t>(src.view()), 0, {}}, {codes.view(), 0, {}, {}});
+            for (int i = 0; i < width * height * 3; ++i) {
+                const float clamped = std::clamp(exact.view().data[i], 0.0f, 255.0f);
+                // Half a code of the last rounding; weights and the rows between add a tenth.
+                ASSERT_LT(std::abs(clamped - float(codes.view().data[i])), 0.65f) << kernel.name;
+            }
+        }
+}
+
+TEST(ByteBank, RefusesWhatMayOverflow) {
+    const Taps sharpening{-1, {-0.5, 2, -0.5}};
+    const Bank bank = make_bank(sharpening, 20, Edge::clamp), plain = make_bank(tent(), {20}, {20}, Edge::clamp);
+    EXPECT_FALSE(make_byte_banks(bank, plain));
+    EXPECT_FALSE(make_byte_banks(plain, bank));
+    EXPECT_TRUE(make_byte_banks(plain, plain));
+}
+
+}  // namespace
+}  // namespace bandlimit

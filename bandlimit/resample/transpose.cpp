@@ -1,0 +1,69 @@
+// Transposition by blocks of 4 x 4 samples, in vectors of 128 bits.
+#include "bandlimit/resample/transpose.h"
+
+#ifdef BANDLIMIT_SCALAR
+
+namespace bandlimit {
+void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    for (int x = 0; x < width; ++x)
+        for (int y = 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
+}
+}  // namespace bandlimit
+
+#else
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bandlimit/resample/transpose.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h, which includes this file once per instruction set.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace bandlimit {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR  // one lane per vector: no blocks
+constexpr int kBlock = 0;
+HWY_INLINE void TransposeBlock(const float*, std::ptrdiff_t, float*, std::ptrdiff_t) {}
+#else
+constexpr int kBlock = 4;
+HWY_INLINE void TransposeBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
+    const hn::Full128<float> d;
+    const hn::Full128<double> pairs;
+    const auto r0 = hn::LoadU(d, rows), r1 = hn::LoadU(d, rows + pitch);
+    const auto r2 = hn::LoadU(d, rows + 2 * pitch), r3 = hn::LoadU(d, rows + 3 * pitch);
+    const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
+    const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
+    const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
+    const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)), d, lanes);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)), d, lanes + stride);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)), d, lanes + 2 * stride);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23)), d, lanes + 3 * stride);
+}
+#endif
+
+void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    const int whole_width = kBlock ? width & ~3 : 0, whole_count = count & ~3;
+    for (int x = 0; x < whole_width; x += kBlock)
+        for (int y = 0; y < whole_count; y += kBlock)
+            TransposeBlock(rows + y * pitch + x, pitch, lanes + x * stride + y, stride);
+    for (int x = 0; x < width; ++x)
+        for (int y = x < whole_width ? whole_count : 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace bandlimit
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace bandlimit {
+HWY_EXPORT(RowsToLanes);
+void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    HWY_DYNAMIC_DISPATCH(RowsToLanes)(rows, pitch, count, width, lanes, stride);
+}
+}  // namespace bandlimit
+#endif
+
+#endif  // BANDLIMIT_SCALAR
