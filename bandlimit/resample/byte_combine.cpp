@@ -1,6 +1,7 @@
 #include "bandlimit/resample/byte_combine.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -15,17 +16,16 @@ std::int32_t bytes_in_lane(const int (&bytes)[4]) {
 
 }  // namespace
 
-void make_column_taps(const ByteBank& bank, int output, ByteColumnTaps& taps) {
+void make_column_taps(const ByteBank& bank, int output, int origin, ByteColumnTaps& taps) {
     const std::span<const std::int16_t> row = bank.row(output);
-    const int first = bank.bank->first(output), count = static_cast<int>(row.size());
+    const int first = bank.bank->first(output) - origin, count = static_cast<int>(row.size());
     taps.first_group = first >> 2;
-    const int groups = ((first + count - 1) >> 2) - taps.first_group + 1;
     taps.high.clear();
     taps.low.clear();
-    for (int g = 0; g < groups; ++g) {
+    for (int g = taps.first_group; g <= (first + count - 1) >> 2; ++g) {
         int high[4] = {}, low[4] = {};
         for (int k = 0; k < 4; ++k) {
-            const int j = 4 * (taps.first_group + g) + k - first;
+            const int j = 4 * g + k - first;
             if (j < 0 || j >= count) continue;
             const int weight = row[static_cast<std::size_t>(j)];
             high[k] = (weight + 64) >> 7;
@@ -36,24 +36,37 @@ void make_column_taps(const ByteBank& bank, int output, ByteColumnTaps& taps) {
     }
 }
 
+int best_origin(const Bank& bank) {
+    std::array<std::int64_t, 4> groups{};
+    for (int i = 0; i < bank.output_count(); ++i)
+        for (int origin = 0; origin < 4; ++origin) {
+            const int first = bank.first(i) - origin, last = first + bank.row_info(i).count - 1;
+            groups[static_cast<std::size_t>(origin)] += (last >> 2) - (first >> 2);
+        }
+    return static_cast<int>(std::min_element(groups.begin(), groups.end()) - groups.begin());
+}
+
 BytePairs make_byte_pairs(const ByteBank& bank) {
+    const auto pairs_of = [&](int i) {
+        const int first = bank.bank->first(i), last = first + static_cast<int>(bank.row(i).size()) - 1;
+        return (last >> 1) - (first >> 1) + 1;
+    };
+    const int outputs = bank.bank->output_count();
     BytePairs pairs;
+    for (int i = 0; i < outputs; ++i) pairs.count = std::max(pairs.count, pairs_of(i));
     std::map<std::pair<int, int>, std::uint32_t> known;  // by row and parity
-    for (int i = 0; i < bank.bank->output_count(); ++i) {
+    for (int i = 0; i < outputs; ++i) {
         const std::span<const std::int16_t> row = bank.row(i);
-        const int first = bank.bank->first(i), begin = first >> 1, odd = first & 1;
-        const int count = (static_cast<int>(row.size()) + odd + 1) / 2;
+        const int first = bank.bank->first(i), odd = first & 1;
         const auto at = [&](int j) {
-            return j < 0 || j >= static_cast<int>(row.size())
-                       ? 0u
-                       : static_cast<std::uint32_t>(row[static_cast<std::size_t>(j)] & 0xffff);
+            const bool is_there = j >= 0 && j < static_cast<int>(row.size());
+            return is_there ? static_cast<std::uint32_t>(row[static_cast<std::size_t>(j)] & 0xffff) : 0u;
         };
-        const int row_index = bank.bank->outputs[static_cast<std::size_t>(i)].row;
-        const auto [entry, is_new] =
-            known.try_emplace({row_index, odd}, static_cast<std::uint32_t>(pairs.weights.size()));
-        for (int p = 0; is_new && p < count; ++p)
+        const auto next = static_cast<std::uint32_t>(pairs.weights.size());
+        const auto entry = known.try_emplace({bank.bank->outputs[static_cast<std::size_t>(i)].row, odd}, next);
+        for (int p = 0; entry.second && p < pairs.count; ++p)
             pairs.weights.push_back(static_cast<std::int32_t>(at(2 * p - odd) | at(2 * p + 1 - odd) << 16));
-        pairs.outputs.push_back({begin, count, entry->second});
+        pairs.outputs.push_back({first >> 1, entry.first->second});
     }
     return pairs;
 }

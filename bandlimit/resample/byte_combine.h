@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bandlimit/resample/byte_bank.h"
@@ -13,6 +14,12 @@ bool has_byte_vectors();
 
 /// How the samples of a pixel lie: what is filtered is one channel, or four side by side.
 enum class Pixel { one = 1, four = 4 };
+
+/// Spreads pixels of 2 or 3 samples to 4, the others 0, and back.
+///
+/// shapes   narrow [pixels * channels], wide [pixels * 4]
+void spread_pixels(const std::uint8_t* narrow, int channels, std::size_t pixels, std::uint8_t* wide);
+void narrow_pixels(const std::uint8_t* wide, int channels, std::size_t pixels, std::uint8_t* narrow);
 
 /// Rows of bytes are worked on in columns of so many.
 constexpr std::size_t byte_column = 64;
@@ -26,41 +33,48 @@ void interleave_bytes(const std::uint8_t* const* rows, std::size_t bytes, std::u
 /// One row of vertical weights, as the interleaved groups of four rows take them: weight = 128 * high + low.
 struct ByteColumnTaps {
     std::vector<std::int32_t> high, low;  ///< four signed bytes each, one element per group
-    int first_group = 0;                  ///< floor(first row / 4)
+    int first_group = 0;                  ///< which holds rows 4 * first_group + origin and on
 };
-/// Reuses the memory of `taps`.
-void make_column_taps(const ByteBank& bank, int output, ByteColumnTaps& taps);
+/// Reuses the memory of `taps`. `origin`, 0 to 3, is the first row of group 0.
+void make_column_taps(const ByteBank& bank, int output, int origin, ByteColumnTaps& taps);
 
-/// Vertical: columns [begin, end) of `out`, in bytes of a row, from those of the groups; 6 bits of fraction.
+/// The origin with which outputs read the fewest groups.
+int best_origin(const Bank& bank);
+
+/// So many rows run side by side along x.
+constexpr int tile_rows(Pixel pixel) { return pixel == Pixel::four ? 8 : 32; }
+/// 16-bit samples of a tile per pair of pixels: the rows of a tile lie side by side, each with its pair of samples, or
+/// its pairs of the four channels.
+constexpr std::size_t tile_pair = 64;
+
+/// Vertical: columns [begin, end), in bytes of a row, from those of the groups; 6 bits of fraction.
 ///
-/// Samples come out in pairs of pixels: for one channel as they lie, for four channels (x, x + 1) of each channel.
-/// shapes   groups[g] from interleave_bytes, out [whole_columns(bytes)]; begin and end are whole columns
+/// One channel comes out as a row of samples. Of four channels, pair p of pixels comes out at out + p * tile_pair: 8
+/// samples, (x, x + 1) of each channel.
+/// The same columns of the rows `ahead` are asked for meanwhile, so that they are in the second cache when their turn
+/// comes: reading memory takes as long as the arithmetic.
+/// shapes   groups[g] from interleave_bytes; begin and end are whole columns, out has room for them
 void combine_byte_rows(const ByteColumnTaps& taps, int bits, const std::uint8_t* const* groups, std::size_t begin,
-                       std::size_t end, Pixel pixel, std::int16_t* out);
+                       std::size_t end, std::span<const std::uint8_t* const> ahead, Pixel pixel, std::int16_t* out);
 
-/// The rows of horizontal weights in pairs that begin at even pixels.
+/// The rows of horizontal weights in pairs that begin at even pixels, filled up with zeros to the same count.
 struct BytePairs {
     struct Output {
-        int first_pair = 0, count = 0;
+        int first_pair = 0;
         std::uint32_t offset = 0;  ///< into weights
     };
+    int count = 0;                      ///< pairs per output
     std::vector<std::int32_t> weights;  ///< two signed 16-bit weights each
     std::vector<Output> outputs;
 };
 /// The weights must have 14 bits.
 BytePairs make_byte_pairs(const ByteBank& bank);
 
-/// So many rows run side by side in a tile.
-constexpr int tile_rows(Pixel pixel) { return pixel == Pixel::four ? 8 : 32; }
-/// 16-bit samples of a tile per pair of pixels.
-constexpr std::size_t tile_pair = 64;
-
-/// Horizontal: pixels [begin, end) of tile_rows(pixel) rows; rows[r] points to pixel `begin`, or is null to leave it
-/// out.
+/// Horizontal: pixels [begin, end) of tile_rows(pixel) rows; rows[r] points to pixel `begin`, or is null to leave it out.
 ///
-/// shapes   tile: pair p of pixels is at tile + (p - first_pair) * tile_pair: its rows side by side, each with the
-///          lanes of one row from combine_byte_rows; all pairs that the outputs read must be there
-void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, int first_pair,
-                        Pixel pixel, std::uint8_t* const* rows);
+/// shapes   tile: pair 0 of pixels is at `tile`, pair p at tile + p * tile_pair; all pairs that the outputs read are
+///          there, which may begin before 0
+void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
+                        std::uint8_t* const* rows);
 
 }  // namespace bandlimit

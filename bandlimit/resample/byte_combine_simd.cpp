@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #if defined(BANDLIMIT_SCALAR) || !(defined(__x86_64__) || defined(_M_X64))
 
 namespace bandlimit {
 bool has_byte_vectors() { return false; }
+void spread_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
+void narrow_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void interleave_bytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
-void combine_byte_rows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t, Pixel,
+void combine_byte_rows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
+                       std::span<const std::uint8_t* const>, Pixel,
                        std::int16_t*) {}
-void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, int, Pixel, std::uint8_t* const*) {}
+void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
 }  // namespace bandlimit
 
 #else
@@ -36,10 +40,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 
 bool HasByteVectors() { return false; }
+void SpreadPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
+void NarrowPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void InterleaveBytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
-void CombineByteRows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t, Pixel,
+void CombineByteRows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
+                       std::span<const std::uint8_t* const>, Pixel,
                      std::int16_t*) {}
-void CombineBytePairs(const BytePairs&, int, int, const std::int16_t*, int, Pixel, std::uint8_t* const*) {}
+void CombineBytePairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
 
 #else
 
@@ -118,6 +125,34 @@ HWY_INLINE void StoreBlocks(V8 v, std::uint8_t* const* rows, std::size_t row_ste
         }
 }
 
+/// Moves pixels of `from` bytes to pixels of `to`, four at a time by one shuffle of 16 bytes, of which some may belong
+/// to the next: they are written over.
+HWY_INLINE void MovePixels(const std::uint8_t* in, std::size_t from, std::uint8_t* out, std::size_t to,
+                           std::size_t pixels) {
+    const hn::Full128<std::uint8_t> d;
+    alignas(16) std::uint8_t places[16];
+    for (std::size_t i = 0; i < 16; ++i) {
+        const std::size_t pixel = i / to, sample = i % to;
+        places[i] = static_cast<std::uint8_t>(pixel < 4 && sample < from ? pixel * from + sample : 0x80);  // 0x80: 0
+    }
+    const auto shuffle = hn::Load(d, places);
+    std::size_t x = 0;
+    for (; x + 8 <= pixels; x += 4)
+        hn::StoreU(hn::TableLookupBytesOr0(hn::LoadU(d, in + x * from), shuffle), d, out + x * to);
+    for (; x < pixels; ++x)
+        for (std::size_t c = 0; c < to; ++c) out[x * to + c] = c < from ? in[x * from + c] : std::uint8_t{0};
+}
+
+void SpreadPixels(const std::uint8_t* narrow, int channels, std::size_t pixels, std::uint8_t* wide) {
+    if (channels == 3) MovePixels(narrow, 3, wide, 4, pixels);
+    else MovePixels(narrow, 2, wide, 4, pixels);
+}
+
+void NarrowPixels(const std::uint8_t* wide, int channels, std::size_t pixels, std::uint8_t* narrow) {
+    if (channels == 3) MovePixels(wide, 4, narrow, 3, pixels);
+    else MovePixels(wide, 4, narrow, 2, pixels);
+}
+
 /// The order of units of 8 bytes from which unpacking and packing, which work in blocks of 16, come out in sequence:
 /// block b holds units b and b + (number of blocks).
 HWY_INLINE auto BlockOrder() {
@@ -164,20 +199,38 @@ void InterleaveBytes(const std::uint8_t* const* rows, std::size_t bytes, std::ui
 /// (128 * high + low) >> bits - 6, but for that shift.
 HWY_INLINE V32 Whole(V32 high, V32 low) { return hn::Add(low, hn::ShiftLeft<7>(high)); }
 
+/// Stores block b of 128 bits at to + b * step.
+HWY_INLINE void ScatterBlocks(V16 v, std::int16_t* to, std::size_t step) {
+    const hn::Full128<std::int16_t> block;
+#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+    _mm_store_si128(reinterpret_cast<__m128i*>(to), _mm512_castsi512_si128(v.raw));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + step), _mm512_extracti32x4_epi32(v.raw, 1));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + 2 * step), _mm512_extracti32x4_epi32(v.raw, 2));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + 3 * step), _mm512_extracti32x4_epi32(v.raw, 3));
+#elif HWY_TARGET == HWY_AVX2
+    _mm_store_si128(reinterpret_cast<__m128i*>(to), _mm256_castsi256_si128(v.raw));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + step), _mm256_extracti128_si256(v.raw, 1));
+#else
+    static_cast<void>(step);
+    hn::Store(v, block, to);
+#endif
+    static_cast<void>(block);
+}
+
 /// Stores the sums of one column; vector k holds bytes 4k..4k+3 of each block.
 template <Pixel kPixel, int kShift>
-HWY_INLINE void StoreSums(const V32* high, const V32* low, std::int16_t* out) {
-    for (int half = 0; half < 2; ++half) {
+HWY_INLINE void StoreSums(const V32* high, const V32* low, std::size_t k, std::int16_t* out) {
+    for (std::size_t half = 0; half < 2; ++half) {
         const V32 a = Whole(high[2 * half], low[2 * half]), b = Whole(high[2 * half + 1], low[2 * half + 1]);
-        V16 result;
         if constexpr (kPixel == Pixel::four) {
             const V16 first = hn::BitCast(d16, hn::ShiftRight<kShift>(a));
             const V16 second = hn::BitCast(d16, hn::ShiftLeft<16 - kShift>(b));
-            result = hn::OddEven(second, first);
+            constexpr std::size_t pair_bytes = 8;
+            ScatterBlocks(hn::OddEven(second, first), out + (k / pair_bytes + half * kBytes / 16) * tile_pair,
+                          tile_pair);
         } else {
-            result = Pack(hn::ShiftRight<kShift>(a), hn::ShiftRight<kShift>(b));
+            hn::StoreU(Pack(hn::ShiftRight<kShift>(a), hn::ShiftRight<kShift>(b)), d16, out + k + half * kBytes / 2);
         }
-        hn::Store(result, d16, out + static_cast<std::size_t>(half) * kBytes / 2);
     }
 }
 
@@ -198,64 +251,76 @@ HWY_INLINE void CombineColumns(const ByteColumnTaps& taps, const std::uint8_t* c
         }
     }
     for (int c = 0; c < kColumns; ++c)
-        StoreSums<kPixel, kShift>(high + 4 * c, low + 4 * c, out + k + static_cast<std::size_t>(c) * kBytes);
+        StoreSums<kPixel, kShift>(high + 4 * c, low + 4 * c, k + static_cast<std::size_t>(c) * kBytes, out);
 }
+
+constexpr std::size_t cache_line = 64;
+
+/// Into the second cache.
+HWY_INLINE void Prefetch(const std::uint8_t* p) { _mm_prefetch(reinterpret_cast<const char*>(p), _MM_HINT_T1); }
 
 template <Pixel kPixel, int kShift>
 void CombineRow(const ByteColumnTaps& taps, const std::uint8_t* const* groups, std::size_t begin, std::size_t end,
-                std::int16_t* out) {
+                std::span<const std::uint8_t* const> ahead, std::int16_t* out) {
     constexpr int columns = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 2 : 1;  // 32 registers, or 16
     std::size_t k = begin;
-    for (; k + columns * kBytes <= end; k += columns * kBytes)
+    for (; k + columns * kBytes <= end; k += columns * kBytes) {
+        for (const std::uint8_t* const row : ahead)
+            for (std::size_t line = 0; line < columns * kBytes; line += cache_line) Prefetch(row + k + line);
         CombineColumns<kPixel, kShift, columns>(taps, groups, k, out);
+    }
     for (; k < end; k += kBytes) CombineColumns<kPixel, kShift, 1>(taps, groups, k, out);
 }
 
 void CombineByteRows(const ByteColumnTaps& taps, int bits, const std::uint8_t* const* groups, std::size_t begin,
-                     std::size_t end, Pixel pixel, std::int16_t* out) {
+                     std::size_t end, std::span<const std::uint8_t* const> ahead, Pixel pixel, std::int16_t* out) {
     const auto run = pixel == Pixel::four ? (bits == 14 ? CombineRow<Pixel::four, 8> : CombineRow<Pixel::four, 7>)
                                           : (bits == 14 ? CombineRow<Pixel::one, 8> : CombineRow<Pixel::one, 7>);
-    run(taps, groups, begin, end, out);
+    run(taps, groups, begin, end, ahead, out);
 }
 
 constexpr int kPairShift = 20;  // 14 bits of weights, 6 of samples
-constexpr std::size_t kTileVectors = 2 * tile_pair / kBytes;
+constexpr std::size_t kTileVectors = 2 * tile_pair / kBytes;  // of which two run at a time
+constexpr std::size_t kPart = kBytes / 2;                     // samples of a vector
 
-/// Sums of one output for kVectors vectors of rows.
-template <int kVectors>
-HWY_INLINE void SumPairs(const BytePairs& pairs, int output, const std::int16_t* tile, int first_pair, V32* sums) {
-    const BytePairs::Output& at = pairs.outputs[static_cast<std::size_t>(output)];
-    const std::int32_t* const weights = pairs.weights.data() + at.offset;
-    const std::int16_t* samples = tile + (at.first_pair - first_pair) * static_cast<std::ptrdiff_t>(tile_pair);
-    for (int u = 0; u < kVectors; ++u) sums[u] = hn::Set(d32, 1 << (kPairShift - 1));
-    for (int p = 0; p < at.count; ++p, samples += tile_pair) {
-        const V32 w = hn::Set(d32, weights[p]);
-        for (int u = 0; u < kVectors; ++u)
-            sums[u] = DotPairs(sums[u], hn::Load(d16, samples + static_cast<std::size_t>(u) * kBytes / 2), w);
-    }
-    for (int u = 0; u < kVectors; ++u) sums[u] = hn::ShiftRight<kPairShift>(sums[u]);
+/// Adds the products of one pair of pixels by its weights to the sums of two vectors of rows.
+HWY_INLINE void AddPair(V32* sums, const std::int16_t* samples, V32 weights) {
+    sums[0] = DotPairs(sums[0], hn::Load(d16, samples), weights);
+    sums[1] = DotPairs(sums[1], hn::Load(d16, samples + kPart), weights);
 }
 
-/// Four outputs of kVectors vectors of rows: per lane of 32 bits of sums, the codes in four bytes, outputs apart.
-template <int kVectors>
-HWY_INLINE void FourOutputs(const BytePairs& pairs, int i, int end, const std::int16_t* tile, int first_pair,
-                            V8* codes) {
-    V32 sums[4][kVectors];
-    for (int o = 0; o < 4; ++o) SumPairs<kVectors>(pairs, std::min(i + o, end - 1), tile, first_pair, sums[o]);
-    for (int u = 0; u < kVectors; ++u) codes[u] = PackCodes(Pack(sums[0][u], sums[1][u]), Pack(sums[2][u], sums[3][u]));
+/// The sums of four outputs, kPairs pairs each, or pairs.count for 0.
+template <int kPairs>
+HWY_INLINE void SumFour(const BytePairs& pairs, int i, int end, const std::int16_t* tile, V32 (*sums)[2]) {
+    const int count = kPairs ? kPairs : pairs.count;
+    for (int o = 0; o < 4; ++o) {
+        const BytePairs::Output& at = pairs.outputs[static_cast<std::size_t>(std::min(i + o, end - 1))];
+        const std::int32_t* const weights = pairs.weights.data() + at.offset;
+        const std::int16_t* samples = tile + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair);
+        for (int p = 0; p < count; ++p, samples += tile_pair) AddPair(sums[o], samples, hn::Set(d32, weights[p]));
+    }
 }
 
-template <int kVectors>
-void PixelsOfFour(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, int first_pair,
-                  std::uint8_t* const* rows) {
-    constexpr std::size_t blocks = kBytes / 16;  // a row each
-    for (int i = begin; i < end; i += 4) {
-        V8 codes[kVectors];
-        FourOutputs<kVectors>(pairs, i, end, tile, first_pair, codes);
-        const std::size_t wanted = static_cast<std::size_t>(std::min(4, end - i)) * 4;
-        for (std::size_t u = 0; u < kVectors; ++u)
-            StoreBlocks(codes[u], rows + u * blocks, 1, static_cast<std::size_t>(i - begin) * 4, wanted);
-    }
+/// The same for outputs one pair of pixels apart that share their weights, as those of a reduction to half: each pair
+/// is loaded once for all.
+template <int kPairs>
+HWY_INLINE void SumFourInStep(const V32* weights, const std::int16_t* samples, V32 (*sums)[2]) {
+    for (int p = 0; p < kPairs + 3; ++p, samples += tile_pair)
+        for (int o = 0; o < 4; ++o)
+            if (p >= o && p < o + kPairs) AddPair(sums[o], samples, weights[p - o]);
+}
+
+HWY_INLINE bool InStep(const BytePairs& pairs, int i, int end) {
+    if (i + 4 > end) return false;
+    const BytePairs::Output* const at = pairs.outputs.data() + i;
+    return at[3].offset == at[0].offset && at[1].offset == at[0].offset && at[2].offset == at[0].offset &&
+           at[3].first_pair == at[0].first_pair + 3;
+}
+
+/// Codes of four outputs: byte o of a lane of 32 bits for output o, where lanes of one output were sums.
+HWY_INLINE V8 PackFour(const V32 (*sums)[2], int vector) {
+    const auto code = [&](int o) { return hn::ShiftRight<kPairShift>(sums[o][vector]); };
+    return PackCodes(Pack(code(0), code(1)), Pack(code(2), code(3)));
 }
 
 /// Swaps rows and columns of the 4 x 4 lanes of each block.
@@ -271,36 +336,83 @@ HWY_INLINE void TransposeBlocks(V32* v) {
     v[3] = hn::BitCast(d32, hn::InterleaveUpper(d64, high01, high23));
 }
 
-template <int kVectors>
-void PixelsOfOne(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, int first_pair,
-                 std::uint8_t* const* rows) {
-    // Within a block, from outputs apart to rows apart.
-    alignas(16) static constexpr std::uint8_t kByRow[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
-    const V8 by_row = hn::LoadDup128(d8, kByRow);
-    for (int i = begin; i < end; i += 16) {
-        V32 lanes[kVectors][4];  // lane = row, its bytes = four outputs
-        for (int m = 0; m < 4; ++m) {
-            V8 codes[kVectors];
-            FourOutputs<kVectors>(pairs, std::min(i + 4 * m, end - 1), end, tile, first_pair, codes);
-            for (int u = 0; u < kVectors; ++u) lanes[u][m] = hn::BitCast(d32, hn::TableLookupBytes(codes[u], by_row));
+/// Outputs [begin, end) of two vectors of rows.
+template <int kPairs>
+class PairRun {
+public:
+    PairRun(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, std::uint8_t* const* rows)
+        : pairs_(pairs), begin_(begin), end_(end), tile_(tile), rows_(rows) {}
+
+    void PixelsOfFour() {
+        constexpr std::size_t blocks = kBytes / 16;  // a row each
+        for (int i = begin_; i < end_; i += 4) {
+            V8 codes[2];
+            FourOutputs(i, codes);
+            const std::size_t wanted = static_cast<std::size_t>(std::min(4, end_ - i)) * 4;
+            for (std::size_t u = 0; u < 2; ++u)
+                StoreBlocks(codes[u], rows_ + u * blocks, 1, static_cast<std::size_t>(i - begin_) * 4, wanted);
         }
-        const std::size_t wanted = static_cast<std::size_t>(std::min(16, end - i));
-        for (std::size_t u = 0; u < kVectors; ++u) {
-            TransposeBlocks(lanes[u]);
-            for (std::size_t r = 0; r < 4; ++r)
-                StoreBlocks(hn::BitCast(d8, lanes[u][r]), rows + u * kBytes / 4 + r, 4,
-                            static_cast<std::size_t>(i - begin), wanted);
+    }
+
+    void PixelsOfOne() {
+        // Within a block, from outputs apart to rows apart.
+        alignas(16) static constexpr std::uint8_t kByRow[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
+        const V8 by_row = hn::LoadDup128(d8, kByRow);
+        for (int i = begin_; i < end_; i += 16) {
+            V32 lanes[2][4];  // a lane is a row, its bytes four outputs
+            for (int m = 0; m < 4; ++m) {
+                V8 codes[2];
+                FourOutputs(std::min(i + 4 * m, end_ - 1), codes);
+                for (int u = 0; u < 2; ++u) lanes[u][m] = hn::BitCast(d32, hn::TableLookupBytes(codes[u], by_row));
+            }
+            const std::size_t wanted = static_cast<std::size_t>(std::min(16, end_ - i));
+            for (std::size_t u = 0; u < 2; ++u) {
+                TransposeBlocks(lanes[u]);
+                for (std::size_t r = 0; r < 4; ++r)
+                    StoreBlocks(hn::BitCast(d8, lanes[u][r]), rows_ + u * kBytes / 4 + r, 4,
+                                static_cast<std::size_t>(i - begin_), wanted);
+            }
         }
+    }
+
+private:
+    HWY_INLINE void FourOutputs(int i, V8* codes) {
+        V32 sums[4][2];
+        for (auto& sum : sums) sum[0] = sum[1] = hn::Set(d32, 1 << (kPairShift - 1));
+        if (kPairs != 0 && InStep(pairs_, i, end_)) {
+            const BytePairs::Output& at = pairs_.outputs[static_cast<std::size_t>(i)];
+            V32 weights[kPairs ? kPairs : 1];
+            for (int p = 0; p < kPairs; ++p) weights[p] = hn::Set(d32, pairs_.weights[at.offset + static_cast<std::size_t>(p)]);
+            SumFourInStep<kPairs>(weights, tile_ + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair), sums);
+        } else {
+            SumFour<kPairs>(pairs_, i, end_, tile_, sums);
+        }
+        for (int u = 0; u < 2; ++u) codes[u] = PackFour(sums, u);
+    }
+
+    const BytePairs& pairs_;
+    int begin_, end_;
+    const std::int16_t* tile_;
+    std::uint8_t* const* rows_;
+};
+
+template <int kPairs>
+void CombinePairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
+                  std::uint8_t* const* rows) {
+    for (std::size_t u = 0; u < kTileVectors; u += 2) {
+        const std::int16_t* const part = tile + u * kPart;
+        if (pixel == Pixel::four) PairRun<kPairs>(pairs, begin, end, part, rows + u * kBytes / 16).PixelsOfFour();
+        else PairRun<kPairs>(pairs, begin, end, part, rows + u * kBytes / 4).PixelsOfOne();
     }
 }
 
-void CombineBytePairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, int first_pair, Pixel pixel,
+void CombineBytePairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
                       std::uint8_t* const* rows) {
-    for (std::size_t u = 0; u < kTileVectors; u += 2) {
-        const std::int16_t* const part = tile + u * kBytes / 2;
-        if (pixel == Pixel::four) PixelsOfFour<2>(pairs, begin, end, part, first_pair, rows + u * kBytes / 16);
-        else PixelsOfOne<2>(pairs, begin, end, part, first_pair, rows + u * kBytes / 4);
-    }
+    using Run = void (*)(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*);
+    constexpr Run unrolled[] = {CombinePairs<0>, CombinePairs<1>, CombinePairs<2>, CombinePairs<3>, CombinePairs<4>,
+                                CombinePairs<5>, CombinePairs<6>, CombinePairs<7>, CombinePairs<8>};
+    const bool is_unrolled = pairs.count < static_cast<int>(std::size(unrolled));
+    unrolled[is_unrolled ? pairs.count : 0](pairs, begin, end, tile, pixel, rows);
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -312,20 +424,28 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bandlimit {
 HWY_EXPORT(HasByteVectors);
+HWY_EXPORT(SpreadPixels);
+HWY_EXPORT(NarrowPixels);
 HWY_EXPORT(InterleaveBytes);
 HWY_EXPORT(CombineByteRows);
 HWY_EXPORT(CombineBytePairs);
 bool has_byte_vectors() { return HWY_DYNAMIC_DISPATCH(HasByteVectors)(); }
+void spread_pixels(const std::uint8_t* narrow, int channels, std::size_t pixels, std::uint8_t* wide) {
+    HWY_DYNAMIC_DISPATCH(SpreadPixels)(narrow, channels, pixels, wide);
+}
+void narrow_pixels(const std::uint8_t* wide, int channels, std::size_t pixels, std::uint8_t* narrow) {
+    HWY_DYNAMIC_DISPATCH(NarrowPixels)(wide, channels, pixels, narrow);
+}
 void interleave_bytes(const std::uint8_t* const* rows, std::size_t bytes, std::uint8_t* out) {
     HWY_DYNAMIC_DISPATCH(InterleaveBytes)(rows, bytes, out);
 }
 void combine_byte_rows(const ByteColumnTaps& taps, int bits, const std::uint8_t* const* groups, std::size_t begin,
-                       std::size_t end, Pixel pixel, std::int16_t* out) {
-    HWY_DYNAMIC_DISPATCH(CombineByteRows)(taps, bits, groups, begin, end, pixel, out);
+                       std::size_t end, std::span<const std::uint8_t* const> ahead, Pixel pixel, std::int16_t* out) {
+    HWY_DYNAMIC_DISPATCH(CombineByteRows)(taps, bits, groups, begin, end, ahead, pixel, out);
 }
-void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, int first_pair,
-                        Pixel pixel, std::uint8_t* const* rows) {
-    HWY_DYNAMIC_DISPATCH(CombineBytePairs)(pairs, begin, end, tile, first_pair, pixel, rows);
+void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
+                        std::uint8_t* const* rows) {
+    HWY_DYNAMIC_DISPATCH(CombineBytePairs)(pairs, begin, end, tile, pixel, rows);
 }
 }  // namespace bandlimit
 #endif

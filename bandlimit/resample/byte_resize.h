@@ -11,6 +11,7 @@ namespace bandlimit {
 struct BytePlan {
     ByteBanks banks;
     BytePairs pairs;
+    int origin = 0;  ///< of the groups of four rows
 };
 BytePlan make_byte_plan(const ByteBanks& banks);
 
