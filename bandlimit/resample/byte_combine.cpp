@@ -46,6 +46,14 @@ int best_origin(const Bank& bank) {
     return static_cast<int>(std::min_element(groups.begin(), groups.end()) - groups.begin());
 }
 
+bool halves_by_box(const Bank& bank) {
+    for (int i = 0; i < bank.output_count(); ++i) {
+        const std::span<const float> row = bank.row(i);
+        if (row.size() != 2 || row[0] != 0.5f || row[1] != 0.5f || bank.first(i) != 2 * i) return false;
+    }
+    return true;
+}
+
 BytePairs make_byte_pairs(const ByteBank& bank) {
     const auto pairs_of = [&](int i) {
         const int first = bank.bank->first(i), last = first + static_cast<int>(bank.row(i).size()) - 1;

@@ -77,4 +77,12 @@ BytePairs make_byte_pairs(const ByteBank& bank);
 void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
                         std::uint8_t* const* rows);
 
+/// Whether the outputs are the means of two samples each, from the first on.
+bool halves_by_box(const Bank& bank);
+
+/// The means of 2 x 2 pixels, rounded to nearest, half up: what the loops above come to for two such banks.
+///
+/// shapes   rows[0], rows[1] [2 * pixels], out [pixels], in pixels of so many samples
+void halve_bytes(const std::uint8_t* const* rows, std::size_t pixels, Pixel pixel, std::uint8_t* out);
+
 }  // namespace bandlimit

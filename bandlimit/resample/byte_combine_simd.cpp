@@ -10,6 +10,7 @@
 
 namespace bandlimit {
 bool has_byte_vectors() { return false; }
+void halve_bytes(const std::uint8_t* const*, std::size_t, Pixel, std::uint8_t*) {}
 void spread_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void narrow_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void interleave_bytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
@@ -40,6 +41,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 
 bool HasByteVectors() { return false; }
+void HalveBytes(const std::uint8_t* const*, std::size_t, Pixel, std::uint8_t*) {}
 void SpreadPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void NarrowPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void InterleaveBytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
@@ -89,6 +91,17 @@ HWY_INLINE V32 DotPairs(V32 sum, V16 samples, V32 weights) {
     return V32{_mm256_add_epi32(sum.raw, _mm256_madd_epi16(samples.raw, weights.raw))};
 #else
     return V32{_mm_add_epi32(sum.raw, _mm_madd_epi16(samples.raw, weights.raw))};
+#endif
+}
+
+/// The sums of adjacent bytes.
+HWY_INLINE V16 PairSums(V8 codes) {
+#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+    return V16{_mm512_maddubs_epi16(codes.raw, _mm512_set1_epi8(1))};
+#elif HWY_TARGET == HWY_AVX2
+    return V16{_mm256_maddubs_epi16(codes.raw, _mm256_set1_epi8(1))};
+#else
+    return V16{_mm_maddubs_epi16(codes.raw, _mm_set1_epi8(1))};
 #endif
 }
 
@@ -415,6 +428,53 @@ void CombineBytePairs(const BytePairs& pairs, int begin, int end, const std::int
     unrolled[is_unrolled ? pairs.count : 0](pairs, begin, end, tile, pixel, rows);
 }
 
+/// One vector of means from two of either row, in the order that undoes what packing by blocks does.
+template <Pixel kPixel, class Order>
+HWY_INLINE V8 HalveColumn(const std::uint8_t* const* rows, std::size_t k, Order order) {
+    alignas(16) static constexpr std::uint8_t kApart[16] = {0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15};
+    const V8 apart = hn::LoadDup128(d8, kApart);
+    const auto sums = [&](const std::uint8_t* from) {
+        const V8 codes = hn::LoadU(d8, from);
+        return PairSums(kPixel == Pixel::four ? hn::TableLookupBytes(codes, apart) : codes);
+    };
+    const auto means = [&](std::size_t at) {
+        const V16 sum = hn::Add(sums(rows[0] + at), sums(rows[1] + at));
+        return hn::ShiftRight<2>(hn::Add(sum, hn::Set(d16, 2)));
+    };
+    const V8 packed = PackCodes(means(2 * k), means(2 * k + kBytes));
+    return hn::BitCast(d8, hn::TableLookupLanes(hn::BitCast(d32, packed), order));
+}
+
+/// Block b of a packed vector holds units b and b + (number of blocks): this puts them in sequence.
+HWY_INLINE auto SequenceOrder() {
+    constexpr std::size_t lanes = kBytes / 4;
+    alignas(64) std::int32_t order[lanes];
+    for (std::size_t l = 0; l < lanes; ++l) {
+        const std::size_t unit = l / 2 % (lanes / 4), half = l / (lanes / 2);
+        order[l] = static_cast<std::int32_t>(4 * unit + 2 * half + l % 2);
+    }
+    return hn::SetTableIndices(d32, order);
+}
+
+template <Pixel kPixel>
+void Halve(const std::uint8_t* const* rows, std::size_t pixels, std::uint8_t* out) {
+    constexpr auto lanes = static_cast<std::size_t>(kPixel);
+    const auto order = SequenceOrder();
+    const std::size_t bytes = pixels * lanes;
+    std::size_t k = 0;
+    for (; k + kBytes <= bytes; k += kBytes) hn::StoreU(HalveColumn<kPixel>(rows, k, order), d8, out + k);
+    for (; k < bytes; ++k) {
+        const std::size_t at = k / lanes * 2 * lanes + k % lanes;
+        const int sum = rows[0][at] + rows[0][at + lanes] + rows[1][at] + rows[1][at + lanes];
+        out[k] = static_cast<std::uint8_t>((sum + 2) >> 2);
+    }
+}
+
+void HalveBytes(const std::uint8_t* const* rows, std::size_t pixels, Pixel pixel, std::uint8_t* out) {
+    if (pixel == Pixel::four) Halve<Pixel::four>(rows, pixels, out);
+    else Halve<Pixel::one>(rows, pixels, out);
+}
+
 #endif  // HWY_TARGET == HWY_SCALAR
 
 }  // namespace HWY_NAMESPACE
@@ -424,12 +484,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bandlimit {
 HWY_EXPORT(HasByteVectors);
+HWY_EXPORT(HalveBytes);
 HWY_EXPORT(SpreadPixels);
 HWY_EXPORT(NarrowPixels);
 HWY_EXPORT(InterleaveBytes);
 HWY_EXPORT(CombineByteRows);
 HWY_EXPORT(CombineBytePairs);
 bool has_byte_vectors() { return HWY_DYNAMIC_DISPATCH(HasByteVectors)(); }
+void halve_bytes(const std::uint8_t* const* rows, std::size_t pixels, Pixel pixel, std::uint8_t* out) {
+    HWY_DYNAMIC_DISPATCH(HalveBytes)(rows, pixels, pixel, out);
+}
 void spread_pixels(const std::uint8_t* narrow, int channels, std::size_t pixels, std::uint8_t* wide) {
     HWY_DYNAMIC_DISPATCH(SpreadPixels)(narrow, channels, pixels, wide);
 }

@@ -236,10 +236,20 @@ private:
     std::vector<const std::uint8_t*> lines_, ahead_;
 };
 
+/// The same for means of 2 x 2 pixels, which need no rows in between.
+void halve_rows(View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst, int first_target, int c,
+                Pixel pixel, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        const std::uint8_t* const rows[] = {&src(0, 2 * i - first_source, c), &src(0, 2 * i + 1 - first_source, c)};
+        halve_bytes(rows, static_cast<std::size_t>(dst.width), pixel, &dst(0, i - first_target, c));
+    }
+}
+
 }  // namespace
 
 BytePlan make_byte_plan(const ByteBanks& banks) {
-    return {banks, make_byte_pairs(banks.x), best_origin(*banks.y.bank)};
+    return {banks, make_byte_pairs(banks.x), best_origin(*banks.y.bank),
+            halves_by_box(*banks.x.bank) && halves_by_box(*banks.y.bank)};
 }
 
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
@@ -250,7 +260,9 @@ void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_
     for (int c = 0; c < src.channels; c += step) {
         const int count = std::min(step, src.channels - c);
         const Pixel pixel = count == 1 ? Pixel::one : Pixel::four;
-        ByteRun(plan, src, first_source, dst, first_target, c, count, pixel).rows(begin, end);
+        if (plan.is_half_box && is_in_place(src, count, pixel) && is_in_place(dst, count, pixel))
+            halve_rows(src, first_source, dst, first_target, c, pixel, begin, end);
+        else ByteRun(plan, src, first_source, dst, first_target, c, count, pixel).rows(begin, end);
     }
 }
 

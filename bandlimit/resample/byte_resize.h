@@ -12,6 +12,7 @@ struct BytePlan {
     ByteBanks banks;
     BytePairs pairs;
     int origin = 0;  ///< of the groups of four rows
+    bool is_half_box = false;
 };
 BytePlan make_byte_plan(const ByteBanks& banks);
 
