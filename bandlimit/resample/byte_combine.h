@@ -70,7 +70,8 @@ struct BytePairs {
 /// The weights must have 14 bits.
 BytePairs make_byte_pairs(const ByteBank& bank);
 
-/// Horizontal: pixels [begin, end) of tile_rows(pixel) rows; rows[r] points to pixel `begin`, or is null to leave it out.
+/// Horizontal: pixels [begin, end) of tile_rows(pixel) rows; rows[r] points to pixel `begin`, or is null to leave it
+/// out.
 ///
 /// shapes   tile: pair 0 of pixels is at `tile`, pair p at tile + p * tile_pair; all pairs that the outputs read are
 ///          there, which may begin before 0

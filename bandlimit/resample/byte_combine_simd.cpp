@@ -15,8 +15,7 @@ void spread_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void narrow_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void interleave_bytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
 void combine_byte_rows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
-                       std::span<const std::uint8_t* const>, Pixel,
-                       std::int16_t*) {}
+                       std::span<const std::uint8_t* const>, Pixel, std::int16_t*) {}
 void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
 }  // namespace bandlimit
 
@@ -46,8 +45,7 @@ void SpreadPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void NarrowPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
 void InterleaveBytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
 void CombineByteRows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
-                       std::span<const std::uint8_t* const>, Pixel,
-                     std::int16_t*) {}
+                     std::span<const std::uint8_t* const>, Pixel, std::int16_t*) {}
 void CombineBytePairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
 
 #else
@@ -292,7 +290,7 @@ void CombineByteRows(const ByteColumnTaps& taps, int bits, const std::uint8_t* c
     run(taps, groups, begin, end, ahead, out);
 }
 
-constexpr int kPairShift = 20;  // 14 bits of weights, 6 of samples
+constexpr int kPairShift = 20;                                // 14 bits of weights, 6 of samples
 constexpr std::size_t kTileVectors = 2 * tile_pair / kBytes;  // of which two run at a time
 constexpr std::size_t kPart = kBytes / 2;                     // samples of a vector
 
@@ -395,7 +393,8 @@ private:
         if (kPairs != 0 && InStep(pairs_, i, end_)) {
             const BytePairs::Output& at = pairs_.outputs[static_cast<std::size_t>(i)];
             V32 weights[kPairs ? kPairs : 1];
-            for (int p = 0; p < kPairs; ++p) weights[p] = hn::Set(d32, pairs_.weights[at.offset + static_cast<std::size_t>(p)]);
+            for (int p = 0; p < kPairs; ++p)
+                weights[p] = hn::Set(d32, pairs_.weights[at.offset + static_cast<std::size_t>(p)]);
             SumFourInStep<kPairs>(weights, tile_ + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair), sums);
         } else {
             SumFour<kPairs>(pairs_, i, end_, tile_, sums);

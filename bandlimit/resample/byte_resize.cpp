@@ -117,11 +117,12 @@ private:
 
     /// Makes the ring hold the groups of source rows in `read`.
     void hold(IndexRange read) {
-        window_.hold({group_of(read.begin), group_of(read.end - 1) + 1},
-                     [&](int slots) { ring_.resize(static_cast<std::size_t>(slots) * padded_ * 4); },
-                     [&](int g, int slot, int count) {
-                         for (int i = 0; i < count; ++i) interleave(g + i, slot + i);
-                     });
+        window_.hold(
+            {group_of(read.begin), group_of(read.end - 1) + 1},
+            [&](int slots) { ring_.resize(static_cast<std::size_t>(slots) * padded_ * 4); },
+            [&](int g, int slot, int count) {
+                for (int i = 0; i < count; ++i) interleave(g + i, slot + i);
+            });
     }
 
     /// The row of the source view that is read as row v; rows that no output of this run reads have no weight: any row
@@ -147,8 +148,9 @@ private:
         }
         // Output rows that lie together read mostly the same groups: a strip of those stays in the first cache.
         const std::size_t tile_bytes_per_column_byte = tile_pair / 4;
-        const std::size_t strip = std::max<std::size_t>(
-            strip_bytes / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) * 2 * byte_column;
+        const std::size_t strip =
+            std::max<std::size_t>(strip_bytes / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) * 2 *
+            byte_column;
         for (std::size_t k = 0; k < padded_; k += strip)
             for (int r = 0; r < last - first; ++r) {
                 const ByteColumnTaps& taps = taps_[static_cast<std::size_t>(r)];
@@ -193,8 +195,8 @@ private:
 
     void filter_x(int first, int last) {
         if (pixel_ == Pixel::one)  // a pair of 16-bit samples moves like one float
-            rows_to_lanes(reinterpret_cast<const float*>(middle_.data()), static_cast<std::ptrdiff_t>(pitch_ / 2), block_,
-                          static_cast<int>(pitch_ / 2), reinterpret_cast<float*>(tile_.data()), tile_pair / 2);
+            rows_to_lanes(reinterpret_cast<const float*>(middle_.data()), static_cast<std::ptrdiff_t>(pitch_ / 2),
+                          block_, static_cast<int>(pitch_ / 2), reinterpret_cast<float*>(tile_.data()), tile_pair / 2);
         std::array<std::uint8_t*, tile_rows(Pixel::one)> rows{};
         const std::size_t length = static_cast<std::size_t>(x_.output_count()) * lanes_;
         for (int i = first; i < last; ++i) {

@@ -6,42 +6,13 @@
 #include <optional>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/resample/apply.h"
-#include "bandlimit/resample/byte_resize.h"
-#include "bandlimit/resample/combine.h"
-#include "bandlimit/resample/radial.h"
-#include "bandlimit/resample/sliding.h"
+#include "bandlimit/resample/float_resize.h"
+#include "bandlimit/resample/plan.h"
 
 namespace bandlimit {
 namespace {
 
-constexpr int block_rows = 16;    // output rows computed together
 constexpr int smallest_run = 64;  // output rows per thread: each run decodes the rows above it once more
-
-/// Rows of interleaved floats, side by side.
-class Rows {
-public:
-    Rows(int count, std::size_t length)
-        : length_(length),
-          samples_(static_cast<std::size_t>(count) * length),
-          pointers_(static_cast<std::size_t>(count)) {
-        for (std::size_t i = 0; i < pointers_.size(); ++i) pointers_[i] = samples_.data() + i * length_;
-    }
-    std::span<float> operator[](int i) { return {pointers_[static_cast<std::size_t>(i)], length_}; }
-    Lines lines() const { return pointers_.data(); }
-    int count() const { return static_cast<int>(pointers_.size()); }
-
-    /// Rows [first, first + count) as an image.
-    View<float> view(int first, int count, int width, int channels) {
-        return {pointers_[static_cast<std::size_t>(first)], width, count, channels, channels,
-                static_cast<std::ptrdiff_t>(length_),       1};
-    }
-
-private:
-    std::size_t length_;
-    std::vector<float> samples_;
-    std::vector<float*> pointers_;
-};
 
 Bank bank_of(const Reconstruction& reconstruction, const Axis& src, const Axis& dst, Edge edge, std::string& name) {
     if (const Taps* taps = std::get_if<Taps>(&reconstruction)) {
@@ -95,149 +66,26 @@ Kernel auto_kernel(const Axis& src, const Axis& dst) {
     return Mapping(src, dst).step() >= 1 || Mapping(src, dst).step() <= -1 ? lanczos(3) : mitchell();
 }
 
-struct Resizer::Plan {
-    Grid src, dst;
-    int channels;
-    ResizeOptions options;
-    std::string kernel_x, kernel_y;
-    Bank x, y;                         ///< of separable kernels
-    std::optional<RadialBank> radial;  ///< instead of both
-    bool x_first = false;
-    std::optional<BytePlan> bytes;  ///< where codes of 8 bits may run in integers; refers to x and y
-
-    float antiring() const { return static_cast<float>(options.antiring); }
-    std::size_t row_length(const Axis& axis) const {
-        return static_cast<std::size_t>(axis.count) * static_cast<std::size_t>(channels);
-    }
-    /// Whether the stored codes are what is to be filtered, and stored again as they come out.
-    bool is_plain(const Encoding& from, const TargetRows& target) const {
-        const Encoding& to = target.encoding;
-        const bool multiplied = from.alpha >= 0 && options.premultiply && !from.associated;
-        const bool converted = to.alpha >= 0 && (options.premultiply || from.associated) != to.associated;
-        return from.transfer == Transfer::linear && to.transfer == Transfer::linear && !multiplied && !converted &&
-               options.antiring == 0 && target.background.empty();
-    }
-    IndexRange rows_read(int first, int last) const {
-        return radial ? radial->rows_read(first, last) : indices_read(y, first, last);
-    }
-};
-
-namespace {
-
-/// Computes a run of output rows in one thread.
-template <class Plan>
-class Run {
-public:
-    Run(const Plan& plan, const SourceRows& source, const TargetRows& target)
-        : plan_(plan),
-          source_(source),
-          target_(target),
-          held_(0, 0),
-          decoded_(plan.x_first ? block_rows : 0, plan.row_length(plan.src.x)),
-          middle_(plan.x_first || plan.radial ? 0 : block_rows, plan.row_length(plan.src.x)),
-          out_(block_rows, plan.row_length(plan.dst.x)) {}
-
-    /// Rows [begin, end) of the target.
-    bool rows(int begin, int end) {
-        bool lost = false;
-        for (int first = begin; first < end; first += block_rows) {
-            const int last = std::min(first + block_rows, end);
-            filter(first, last);
-            for (int i = first; i < last; ++i) lost |= store(out_[i - first], i);
-        }
-        return lost;
-    }
-
-private:
-    void filter(int first, int last) {
-        const IndexRange read = plan_.rows_read(first, last);
-        window_.hold(
-            read, [&](int slots) { held_ = Rows(slots, plan_.row_length(plan_.x_first ? plan_.dst.x : plan_.src.x)); },
-            [&](int v, int slot, int count) { fill(v, slot, count); });
-        if (plan_.radial) return filter_radial(first, last, read);
-        std::vector<const float*> lines;
-        for (int v = read.begin; v < read.end; ++v) lines.push_back(held_row(v));
-        const ConstLines at_zero = lines.data() - read.begin;
-        if (plan_.x_first) {
-            combine(plan_.y, first, last, plan_.antiring(), at_zero, out_.lines(), plan_.row_length(plan_.dst.x));
-        } else {
-            combine(plan_.y, first, last, plan_.antiring(), at_zero, middle_.lines(), plan_.row_length(plan_.src.x));
-            filter_x(middle_, 0, out_, 0, last - first);
-        }
-    }
-
-    void filter_radial(int first, int last, IndexRange read) {
-        std::vector<const float*> lines;
-        for (int v = read.begin; v < read.end; ++v) lines.push_back(held_row(v));
-        for (int i = first; i < last; ++i)
-            plan_.radial->row(i, lines.data() - read.begin, plan_.channels, plan_.antiring(), out_[i - first].data());
-    }
-
-    void filter_x(Rows& from, int first_from, Rows& to, int first_to, int count) {
-        apply(plan_.x, from.view(first_from, count, plan_.src.x.count, plan_.channels),
-              to.view(first_to, count, plan_.dst.x.count, plan_.channels), {1}, plan_.options.antiring);
-    }
-
-    const float* held_row(int v) { return held_[window_.slot_of(v)].data(); }
-
-    /// Makes the rows of indices [v, v + count) in slots of the window.
-    void fill(int v, int slot, int count) {
-        if (!plan_.x_first) {
-            for (int i = 0; i < count; ++i) load(v + i, held_[slot + i]);
-            return;
-        }
-        for (int done = 0; done < count; done += block_rows) {
-            const int some = std::min(block_rows, count - done);
-            for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
-            filter_x(decoded_, 0, held_, slot + done, some);
-        }
-    }
-
-    void load(int v, std::span<float> row) {
-        const int stored_row = resolve(v, plan_.src.y.count, plan_.options.edge);
-        if (stored_row < 0) return std::fill(row.begin(), row.end(), 0.0f);
-        decode_row(source_.samples, stored_row - source_.first_row, source_.encoding, plan_.options.premultiply, row);
-    }
-
-    bool store(std::span<const float> row, int i) {
-        const int y = i - target_.first_row;
-        if (target_.background.empty()) return encode_row(row, premultiplied(), target_.samples, y, target_.encoding);
-        const auto colours = static_cast<std::size_t>(plan_.channels - 1);
-        std::vector<float> opaque(static_cast<std::size_t>(plan_.dst.x.count) * colours);
-        composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque);
-        return encode_row(opaque, false, target_.samples, y, target_.encoding);
-    }
-
-    bool premultiplied() const { return plan_.options.premultiply || source_.encoding.associated; }
-
-    const Plan& plan_;
-    const SourceRows& source_;
-    const TargetRows& target_;
-    SlidingWindow window_;
-    Rows held_, decoded_, middle_, out_;
-};
-
-}  // namespace
-
 Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options) {
     if (channels < 1) fail("Resizer: channels = ", channels, "; pass 1 or more");
     if (!(options.antiring >= 0 && options.antiring <= 1))
         fail("Resizer: antiring = ", options.antiring, "; pass 0 (off) to 1 (no overshoot)");
-    Plan plan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}};
+    auto plan =
+        std::make_unique<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}, {}});
     const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
     if (kernel && is_radial(*kernel)) {
-        plan.radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge);
-        plan.kernel_x = plan.kernel_y = kernel->name;
+        plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge);
+        plan->kernel_x = plan->kernel_y = kernel->name;
     } else {
-        plan.x = bank_of(options.reconstruction, src.x, dst.x, options.edge, plan.kernel_x);
-        plan.y = bank_of(options.reconstruction, src.y, dst.y, options.edge, plan.kernel_y);
+        plan->x = bank_of(options.reconstruction, src.x, dst.x, options.edge, plan->kernel_x);
+        plan->y = bank_of(options.reconstruction, src.y, dst.y, options.edge, plan->kernel_y);
         const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
-        plan.x_first = cost(step_x, step_y) < cost(step_y, step_x);
+        plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
+        plan->strips = make_strips(*plan);
+        if (has_byte_vectors())
+            if (const auto banks = make_byte_banks(plan->x, plan->y)) plan->bytes = make_byte_plan(*banks);
     }
-    auto placed = std::make_unique<Plan>(std::move(plan));
-    if (!placed->radial && has_byte_vectors())
-        if (const auto banks = make_byte_banks(placed->x, placed->y)) placed->bytes = make_byte_plan(*banks);
-    plan_ = std::move(placed);
+    plan_ = std::move(plan);
 }
 
 Resizer::~Resizer() = default;
@@ -297,7 +145,7 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
         const int first = target.first_row + static_cast<int>(begin), last = target.first_row + static_cast<int>(end);
         if (in_integers)
             return resize_bytes(*plan_->bytes, *codes_in, source.first_row, *codes_out, target.first_row, first, last);
-        if (Run<Plan>(*plan_, source, target).rows(first, last)) lost = true;
+        if (resize_floats(*plan_, source, target, first, last)) lost = true;
     });
     return lost;
 }

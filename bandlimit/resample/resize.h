@@ -54,6 +54,8 @@ struct TargetRows {
     std::vector<float> background;
 };
 
+struct ResizePlan;
+
 /// A resampling ready to run on blocks of rows, so that neither image need be in memory.
 ///
 /// Rows are decoded to linear float, filtered along both axes, and encoded, a few at a time, by contiguous runs of
@@ -88,8 +90,7 @@ public:
     bool run(const SourceRows& source, const TargetRows& target, Parallel parallel = {}) const;
 
 private:
-    struct Plan;
-    std::unique_ptr<const Plan> plan_;
+    std::unique_ptr<const ResizePlan> plan_;
 };
 
 /// Resamples linear light to width x height on the same interval: images share their corners.

@@ -1,0 +1,222 @@
+#include "bandlimit/resample/float_resize.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "bandlimit/core/allocator.h"
+#include "bandlimit/resample/combine.h"
+#include "bandlimit/resample/sliding.h"
+
+namespace bandlimit {
+namespace {
+
+constexpr double strip_bytes = 1 << 20;  // of rows between source and output: half of a second cache of these days
+
+/// Rows of interleaved floats, side by side.
+class Rows {
+public:
+    Rows() = default;
+    Rows(int count, std::size_t length)
+        : pitch_((length + 15) / 16 * 16 + 16 * 9),  // no power of two: rows must not share places in a cache
+          samples_(static_cast<std::size_t>(count) * pitch_),
+          pointers_(static_cast<std::size_t>(count)) {
+        for (std::size_t i = 0; i < pointers_.size(); ++i) pointers_[i] = samples_.data() + i * pitch_;
+    }
+    float* operator[](int i) { return pointers_[static_cast<std::size_t>(i)]; }
+    Lines lines() const { return pointers_.data(); }
+
+    /// Rows [first, first + count) as an image.
+    View<float> view(int first, int count, int width, int channels) {
+        return {(*this)[first], width, count, channels, channels, static_cast<std::ptrdiff_t>(pitch_), 1};
+    }
+
+private:
+    std::size_t pitch_ = 0;
+    std::vector<float, SampleAllocator<float>> samples_;
+    std::vector<float*> pointers_;
+};
+
+/// Columns [first, first + width) of a view of any depth.
+template <class Any>
+Any columns_of(const Any& view, int first, int width) {
+    return std::visit([&](auto v) { return Any(cropped(v, first, 0, width, v.height)); }, view);
+}
+
+/// Computes the output columns of one strip in one thread; for radial kernels, of all.
+class FloatRun {
+public:
+    FloatRun(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, const Strip& strip)
+        : plan_(plan),
+          source_(source),
+          target_(target),
+          strip_(strip),
+          channels_(static_cast<std::size_t>(plan.channels)),
+          width_(strip.read.end - strip.read.begin),
+          outputs_(strip.outputs()),
+          inside_{std::max(strip.read.begin, 0), std::min(strip.read.end, plan.src.x.count)},
+          columns_(columns_of(source.samples, inside_.begin, inside_.end - inside_.begin)),
+          targets_(columns_of(target.samples, strip.first(), outputs_)),
+          out_(block_rows, length(outputs_)) {
+        if (plan.x_first) decoded_ = Rows(block_rows, length(width_));
+        else if (!plan.radial) middle_ = Rows(block_rows, length(width_));
+    }
+
+    /// Rows [begin, end) of the target; returns whether something not finite was lost.
+    bool rows(int begin, int end) {
+        bool lost = false;
+        for (int first = begin; first < end; first += block_rows) {
+            const int last = std::min(first + block_rows, end);
+            gather_lines(plan_.rows_read(first, last));
+            if (plan_.radial) filter_radial(first, last);
+            else if (plan_.x_first) filter_y(first, last, out_, outputs_);
+            else {
+                filter_y(first, last, middle_, width_);
+                filter_x(middle_, 0, out_, 0, last - first);
+            }
+            for (int i = first; i < last; ++i) lost |= store(i - first, i);
+        }
+        return lost;
+    }
+
+private:
+    std::size_t length(int width) const { return static_cast<std::size_t>(width) * channels_; }
+    float antiring() const { return static_cast<float>(plan_.options.antiring); }
+    bool premultiplied() const { return plan_.options.premultiply || source_.encoding.associated; }
+
+    /// Lets lines_ point to the rows `read`, which are made unless they are there.
+    void gather_lines(IndexRange read) {
+        lines_.clear();
+        begin_ = read.begin;
+        if (is_direct()) {
+            for (int v = read.begin; v < read.end; ++v) lines_.push_back(direct_row(v));
+            return;
+        }
+        window_.hold(
+            read, [&](int slots) { held_ = Rows(slots, length(plan_.x_first ? outputs_ : width_)); },
+            [&](int v, int slot, int count) { fill(v, slot, count); });
+        for (int v = read.begin; v < read.end; ++v) lines_.push_back(held_[window_.slot_of(v)]);
+    }
+    ConstLines lines_at_zero() const { return lines_.data() - begin_; }
+
+    /// Whether source rows are floats that need nothing but filtering.
+    bool is_direct() const {
+        const auto* floats = std::get_if<View<const float>>(&columns_);
+        const Encoding& from = source_.encoding;
+        return floats && floats->dx == plan_.channels && (floats->dc == 1 || plan_.channels == 1) &&
+               from.transfer == Transfer::linear && (from.alpha < 0 || from.associated || !plan_.options.premultiply) &&
+               !plan_.x_first && width_ == floats->width && !plan_.radial;
+    }
+    const float* direct_row(int v) const {
+        const int y = resolve(v, plan_.src.y.count, plan_.options.edge) - source_.first_row;
+        return &std::get<View<const float>>(columns_)(0, y);
+    }
+
+    void filter_y(int first, int last, Rows& to, int width) {
+        combine(plan_.y, first, last, antiring(), lines_at_zero(), to.lines(), length(width));
+    }
+
+    void filter_x(Rows& from, int first_from, Rows& to, int first_to, int count) {
+        apply_by_tiles(plan_.x, strip_.runs, from.view(first_from, count, width_, plan_.channels), strip_.read.begin,
+                       to.view(first_to, count, outputs_, plan_.channels), strip_.first(), antiring());
+    }
+
+    void filter_radial(int first, int last) {
+        for (int i = first; i < last; ++i)
+            plan_.radial->row(i, lines_at_zero(), plan_.channels, antiring(), out_[i - first]);
+    }
+
+    /// Makes the rows of indices [v, v + count) in slots of the window.
+    void fill(int v, int slot, int count) {
+        if (!plan_.x_first) {
+            for (int i = 0; i < count; ++i) load(v + i, held_[slot + i]);
+            return;
+        }
+        for (int done = 0; done < count; done += block_rows) {
+            const int some = std::min(block_rows, count - done);
+            for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
+            filter_x(decoded_, 0, held_, slot + done, some);
+        }
+    }
+
+    void load(int v, float* row) {
+        const int y = resolve(v, plan_.src.y.count, plan_.options.edge);
+        if (y < 0) return static_cast<void>(std::fill_n(row, length(width_), 0.0f));
+        float* const inside = row + length(inside_.begin - strip_.read.begin);
+        decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
+        for (int x = strip_.read.begin; x < inside_.begin; ++x) load_outside(x, y, row);
+        for (int x = inside_.end; x < strip_.read.end; ++x) load_outside(x, y, row);
+    }
+
+    void load_outside(int x, int y, float* row) {
+        const int from = resolve(x, plan_.src.x.count, plan_.options.edge);
+        float* const to = row + length(x - strip_.read.begin);
+        if (from < 0) std::fill_n(to, channels_, 0.0f);
+        else if (from >= inside_.begin && from < inside_.end)
+            std::copy_n(row + length(from - strip_.read.begin), channels_, to);
+        else decode(columns_of(source_.samples, from, 1), y, {to, channels_});
+    }
+
+    void decode(const AnyConstView& from, int y, std::span<float> row) const {
+        decode_row(from, y - source_.first_row, source_.encoding, plan_.options.premultiply, row);
+    }
+
+    bool store(int from, int i) {
+        const std::span<const float> row{out_[from], length(outputs_)};
+        const int y = i - target_.first_row;
+        if (target_.background.empty()) return encode_row(row, premultiplied(), targets_, y, target_.encoding);
+        opaque_.resize(static_cast<std::size_t>(outputs_) * (channels_ - 1));
+        composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque_);
+        return encode_row(opaque_, false, targets_, y, target_.encoding);
+    }
+
+    const ResizePlan& plan_;
+    const SourceRows& source_;
+    const TargetRows& target_;
+    const Strip& strip_;
+    std::size_t channels_;
+    int width_, outputs_;
+    IndexRange inside_;     ///< the source columns of the strip that exist
+    AnyConstView columns_;  ///< those
+    AnyView targets_;
+    SlidingWindow window_;
+    Rows held_, decoded_, middle_, out_;
+    std::vector<const float*> lines_;
+    int begin_ = 0;  ///< the row of lines_[0]
+    std::vector<float> opaque_;
+};
+
+}  // namespace
+
+std::vector<Strip> make_strips(const ResizePlan& plan) {
+    const double step = static_cast<double>(plan.src.y.count) / plan.dst.y.count;
+    const double rows = block_rows * (1 + step) + plan.y.row_info(plan.y.output_count() / 2).count;
+    const double columns = plan.x_first ? plan.src.x.count : strip_bytes / (rows * plan.channels * sizeof(float));
+    std::vector<Strip> strips;
+    for (const TileRun& run : tile_runs(plan.x)) {
+        if (!strips.empty()) {
+            Strip& strip = strips.back();
+            const IndexRange both{std::min(strip.read.begin, run.read.begin), std::max(strip.read.end, run.read.end)};
+            // Columns at the border of two strips are decoded twice.
+            const int least = 16 * plan.x.row_info(run.first).count;
+            if (plan.x_first || both.end - both.begin <= std::max<double>(columns, least)) {
+                strip.runs.push_back(run);
+                strip.read = both;
+                continue;
+            }
+        }
+        strips.push_back({{run}, run.read});
+    }
+    return strips;
+}
+
+bool resize_floats(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end) {
+    if (plan.radial) {
+        const Strip all{{{0, plan.dst.x.count, {}}}, {0, plan.src.x.count}};
+        return FloatRun(plan, source, target, all).rows(begin, end);
+    }
+    bool lost = false;
+    for (const Strip& strip : plan.strips) lost |= FloatRun(plan, source, target, strip).rows(begin, end);
+    return lost;
+}
+
+}  // namespace bandlimit
