@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <utility>
 
 #if defined(BANDLIMIT_SCALAR) || !(defined(__x86_64__) || defined(_M_X64))
 
@@ -27,12 +28,7 @@ void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, Pixel, 
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
-// Highway's list of instructions for AVX3_DL, which it chooses only where they are there, does not name this one.
-#if HWY_TARGET == HWY_AVX3_DL
-HWY_PUSH_ATTRIBUTES(HWY_TARGET_STR ",avx512vnni")
-#else
 HWY_BEFORE_NAMESPACE();
-#endif
 namespace bandlimit {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -66,7 +62,9 @@ constexpr std::size_t kBytes = HWY_LANES(std::uint8_t);
 /// sum + the four products of unsigned bytes by signed ones, per lane. Two adjacent products must fit 16 bits.
 HWY_INLINE V32 DotBytes(V32 sum, V8 codes, V32 weights) {
 #if HWY_TARGET == HWY_AVX3_DL
-    return V32{_mm512_dpbusd_epi32(sum.raw, codes.raw, weights.raw)};
+    // As the compilers' function has it, but GCC 12 then copies each sum twice per product.
+    __asm__("vpdpbusd %2, %1, %0" : "+v"(sum.raw) : "v"(codes.raw), "v"(weights.raw));
+    return sum;
 #elif HWY_TARGET == HWY_AVX3
     const __m512i products = _mm512_maddubs_epi16(codes.raw, weights.raw);
     return V32{_mm512_add_epi32(sum.raw, _mm512_madd_epi16(products, _mm512_set1_epi16(1)))};
@@ -82,7 +80,8 @@ HWY_INLINE V32 DotBytes(V32 sum, V8 codes, V32 weights) {
 /// sum + the two products of 16-bit samples, per lane.
 HWY_INLINE V32 DotPairs(V32 sum, V16 samples, V32 weights) {
 #if HWY_TARGET == HWY_AVX3_DL
-    return V32{_mm512_dpwssd_epi32(sum.raw, samples.raw, weights.raw)};
+    __asm__("vpdpwssd %2, %1, %0" : "+v"(sum.raw) : "v"(samples.raw), "v"(weights.raw));
+    return sum;
 #elif HWY_TARGET == HWY_AVX3
     return V32{_mm512_add_epi32(sum.raw, _mm512_madd_epi16(samples.raw, weights.raw))};
 #elif HWY_TARGET == HWY_AVX2
@@ -207,9 +206,6 @@ void InterleaveBytes(const std::uint8_t* const* rows, std::size_t bytes, std::ui
     }
 }
 
-/// (128 * high + low) >> bits - 6, but for that shift.
-HWY_INLINE V32 Whole(V32 high, V32 low) { return hn::Add(low, hn::ShiftLeft<7>(high)); }
-
 /// Stores block b of 128 bits at to + b * step.
 HWY_INLINE void ScatterBlocks(V16 v, std::int16_t* to, std::size_t step) {
     const hn::Full128<std::int16_t> block;
@@ -228,42 +224,48 @@ HWY_INLINE void ScatterBlocks(V16 v, std::int16_t* to, std::size_t step) {
     static_cast<void>(block);
 }
 
-/// Stores the sums of one column; vector k holds bytes 4k..4k+3 of each block.
+/// The sums of one column: vector k holds bytes 4k..4k+3 of each block. Members, not arrays with loops over them: that
+/// keeps them in registers.
 template <Pixel kPixel, int kShift>
-HWY_INLINE void StoreSums(const V32* high, const V32* low, std::size_t k, std::int16_t* out) {
-    for (std::size_t half = 0; half < 2; ++half) {
-        const V32 a = Whole(high[2 * half], low[2 * half]), b = Whole(high[2 * half + 1], low[2 * half + 1]);
+struct ColumnSums {
+    V32 high0, high1, high2, high3, low0, low1, low2, low3;
+
+    HWY_INLINE void Start() {
+        high0 = high1 = high2 = high3 = hn::Zero(d32);
+        low0 = low1 = low2 = low3 = hn::Set(d32, 1 << (kShift - 1));
+    }
+
+    HWY_INLINE void Add(const std::uint8_t* codes, V32 high, V32 low) {
+        AddVector(codes, high, low, high0, low0);
+        AddVector(codes + kBytes, high, low, high1, low1);
+        AddVector(codes + 2 * kBytes, high, low, high2, low2);
+        AddVector(codes + 3 * kBytes, high, low, high3, low3);
+    }
+
+    HWY_INLINE void Store(std::size_t k, std::int16_t* out) const {
+        StoreHalf(Whole(high0, low0), Whole(high1, low1), k, out);
+        StoreHalf(Whole(high2, low2), Whole(high3, low3), k + kBytes / 2, out);
+    }
+
+private:
+    static HWY_INLINE void AddVector(const std::uint8_t* codes, V32 high, V32 low, V32& high_sum, V32& low_sum) {
+        const V8 four_rows = hn::Load(d8, codes);
+        high_sum = DotBytes(high_sum, four_rows, high);
+        low_sum = DotBytes(low_sum, four_rows, low);
+    }
+    static HWY_INLINE V32 Whole(V32 high, V32 low) { return hn::Add(low, hn::ShiftLeft<7>(high)); }
+
+    static HWY_INLINE void StoreHalf(V32 a, V32 b, std::size_t k, std::int16_t* out) {
         if constexpr (kPixel == Pixel::four) {
             const V16 first = hn::BitCast(d16, hn::ShiftRight<kShift>(a));
             const V16 second = hn::BitCast(d16, hn::ShiftLeft<16 - kShift>(b));
             constexpr std::size_t pair_bytes = 8;
-            ScatterBlocks(hn::OddEven(second, first), out + (k / pair_bytes + half * kBytes / 16) * tile_pair,
-                          tile_pair);
+            ScatterBlocks(hn::OddEven(second, first), out + k / pair_bytes * tile_pair, tile_pair);
         } else {
-            hn::StoreU(Pack(hn::ShiftRight<kShift>(a), hn::ShiftRight<kShift>(b)), d16, out + k + half * kBytes / 2);
+            hn::StoreU(Pack(hn::ShiftRight<kShift>(a), hn::ShiftRight<kShift>(b)), d16, out + k);
         }
     }
-}
-
-/// kColumns columns side by side share the weights.
-template <Pixel kPixel, int kShift, int kColumns>
-HWY_INLINE void CombineColumns(const ByteColumnTaps& taps, const std::uint8_t* const* groups, std::size_t k,
-                               std::int16_t* out) {
-    V32 high[4 * kColumns], low[4 * kColumns];
-    for (int v = 0; v < 4 * kColumns; ++v) high[v] = hn::Zero(d32), low[v] = hn::Set(d32, 1 << (kShift - 1));
-    const std::size_t count = taps.high.size();
-    for (std::size_t g = 0; g < count; ++g) {
-        const V32 high_weights = hn::Set(d32, taps.high[g]), low_weights = hn::Set(d32, taps.low[g]);
-        const std::uint8_t* const codes = groups[g] + 4 * k;
-        for (int v = 0; v < 4 * kColumns; ++v) {
-            const V8 four_rows = hn::Load(d8, codes + static_cast<std::size_t>(v) * kBytes);
-            high[v] = DotBytes(high[v], four_rows, high_weights);
-            low[v] = DotBytes(low[v], four_rows, low_weights);
-        }
-    }
-    for (int c = 0; c < kColumns; ++c)
-        StoreSums<kPixel, kShift>(high + 4 * c, low + 4 * c, k + static_cast<std::size_t>(c) * kBytes, out);
-}
+};
 
 constexpr std::size_t cache_line = 64;
 
@@ -273,14 +275,33 @@ HWY_INLINE void Prefetch(const std::uint8_t* p) { _mm_prefetch(reinterpret_cast<
 template <Pixel kPixel, int kShift>
 void CombineRow(const ByteColumnTaps& taps, const std::uint8_t* const* groups, std::size_t begin, std::size_t end,
                 std::span<const std::uint8_t* const> ahead, std::int16_t* out) {
-    constexpr int columns = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 2 : 1;  // 32 registers, or 16
+    const std::int32_t *const high = taps.high.data(), *const low = taps.low.data();
+    const std::size_t count = taps.high.size();
     std::size_t k = begin;
-    for (; k + columns * kBytes <= end; k += columns * kBytes) {
-        for (const std::uint8_t* const row : ahead)
-            for (std::size_t line = 0; line < columns * kBytes; line += cache_line) Prefetch(row + k + line);
-        CombineColumns<kPixel, kShift, columns>(taps, groups, k, out);
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL  // has registers for two columns, which share the weights
+    for (; k + 2 * kBytes <= end; k += 2 * kBytes) {
+        for (const std::uint8_t* const row : ahead) Prefetch(row + k), Prefetch(row + k + kBytes);
+        ColumnSums<kPixel, kShift> sums, next;
+        sums.Start();
+        next.Start();
+        for (std::size_t g = 0; g < count; ++g) {
+            const V32 high_weights = hn::Set(d32, high[g]), low_weights = hn::Set(d32, low[g]);
+            sums.Add(groups[g] + 4 * k, high_weights, low_weights);
+            next.Add(groups[g] + 4 * k + 4 * kBytes, high_weights, low_weights);
+        }
+        sums.Store(k, out);
+        next.Store(k + kBytes, out);
     }
-    for (; k < end; k += kBytes) CombineColumns<kPixel, kShift, 1>(taps, groups, k, out);
+#endif
+    for (; k < end; k += kBytes) {
+        if (k % cache_line == 0)
+            for (const std::uint8_t* const row : ahead) Prefetch(row + k);
+        ColumnSums<kPixel, kShift> sums;
+        sums.Start();
+        for (std::size_t g = 0; g < count; ++g)
+            sums.Add(groups[g] + 4 * k, hn::Set(d32, high[g]), hn::Set(d32, low[g]));
+        sums.Store(k, out);
+    }
 }
 
 void CombineByteRows(const ByteColumnTaps& taps, int bits, const std::uint8_t* const* groups, std::size_t begin,
@@ -294,31 +315,67 @@ constexpr int kPairShift = 20;                                // 14 bits of weig
 constexpr std::size_t kTileVectors = 2 * tile_pair / kBytes;  // of which two run at a time
 constexpr std::size_t kPart = kBytes / 2;                     // samples of a vector
 
-/// Adds the products of one pair of pixels by its weights to the sums of two vectors of rows.
-HWY_INLINE void AddPair(V32* sums, const std::int16_t* samples, V32 weights) {
-    sums[0] = DotPairs(sums[0], hn::Load(d16, samples), weights);
-    sums[1] = DotPairs(sums[1], hn::Load(d16, samples + kPart), weights);
+/// The sums of one output for two vectors of rows.
+struct PairSums2 {
+    V32 a, b;
+
+    HWY_INLINE void Start() { a = b = hn::Set(d32, 1 << (kPairShift - 1)); }
+
+    HWY_INLINE void Add(V16 samples_a, V16 samples_b, V32 weights) {
+        a = DotPairs(a, samples_a, weights);
+        b = DotPairs(b, samples_b, weights);
+    }
+};
+struct FourSums {
+    PairSums2 o0, o1, o2, o3;
+
+    HWY_INLINE void Start() {
+        o0.Start();
+        o1 = o2 = o3 = o0;
+    }
+};
+
+/// One output: kPairs pairs, or pairs.count for 0.
+template <int kPairs>
+HWY_INLINE void SumOne(const BytePairs& pairs, int i, const std::int16_t* tile, PairSums2& sums) {
+    const int count = kPairs ? kPairs : pairs.count;
+    const BytePairs::Output& at = pairs.outputs[static_cast<std::size_t>(i)];
+    const std::int32_t* const weights = pairs.weights.data() + at.offset;
+    const std::int16_t* samples = tile + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair);
+    for (int p = 0; p < count; ++p, samples += tile_pair)
+        sums.Add(hn::Load(d16, samples), hn::Load(d16, samples + kPart), hn::Set(d32, weights[p]));
 }
 
-/// The sums of four outputs, kPairs pairs each, or pairs.count for 0.
 template <int kPairs>
-HWY_INLINE void SumFour(const BytePairs& pairs, int i, int end, const std::int16_t* tile, V32 (*sums)[2]) {
-    const int count = kPairs ? kPairs : pairs.count;
-    for (int o = 0; o < 4; ++o) {
-        const BytePairs::Output& at = pairs.outputs[static_cast<std::size_t>(std::min(i + o, end - 1))];
-        const std::int32_t* const weights = pairs.weights.data() + at.offset;
-        const std::int16_t* samples = tile + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair);
-        for (int p = 0; p < count; ++p, samples += tile_pair) AddPair(sums[o], samples, hn::Set(d32, weights[p]));
-    }
+HWY_INLINE void SumFour(const BytePairs& pairs, int i, int end, const std::int16_t* tile, FourSums& sums) {
+    SumOne<kPairs>(pairs, i, tile, sums.o0);
+    SumOne<kPairs>(pairs, std::min(i + 1, end - 1), tile, sums.o1);
+    SumOne<kPairs>(pairs, std::min(i + 2, end - 1), tile, sums.o2);
+    SumOne<kPairs>(pairs, std::min(i + 3, end - 1), tile, sums.o3);
 }
 
 /// The same for outputs one pair of pixels apart that share their weights, as those of a reduction to half: each pair
 /// is loaded once for all.
-template <int kPairs>
-HWY_INLINE void SumFourInStep(const V32* weights, const std::int16_t* samples, V32 (*sums)[2]) {
-    for (int p = 0; p < kPairs + 3; ++p, samples += tile_pair)
-        for (int o = 0; o < 4; ++o)
-            if (p >= o && p < o + kPairs) AddPair(sums[o], samples, weights[p - o]);
+template <std::size_t kCount>
+struct Weights {
+    V32 of[kCount];
+};
+template <int kPairs, int kPair>
+HWY_INLINE void StepPair(const Weights<kPairs>& weights, const std::int16_t* samples, FourSums& sums) {
+    const V16 a = hn::Load(d16, samples + kPair * tile_pair), b = hn::Load(d16, samples + kPair * tile_pair + kPart);
+    if constexpr (kPair < kPairs) sums.o0.Add(a, b, weights.of[kPair]);
+    if constexpr (kPair >= 1 && kPair < kPairs + 1) sums.o1.Add(a, b, weights.of[kPair - 1]);
+    if constexpr (kPair >= 2 && kPair < kPairs + 2) sums.o2.Add(a, b, weights.of[kPair - 2]);
+    if constexpr (kPair >= 3) sums.o3.Add(a, b, weights.of[kPair - 3]);
+}
+template <int... kPair>
+HWY_INLINE auto Broadcast(const std::int32_t* from, std::integer_sequence<int, kPair...>) {
+    return Weights<sizeof...(kPair)>{{hn::Set(d32, from[kPair])...}};
+}
+template <int kPairs, int... kPair>
+HWY_INLINE void SumFourInStep(const Weights<kPairs>& weights, const std::int16_t* samples, FourSums& sums,
+                              std::integer_sequence<int, kPair...>) {
+    (StepPair<kPairs, kPair>(weights, samples, sums), ...);
 }
 
 HWY_INLINE bool InStep(const BytePairs& pairs, int i, int end) {
@@ -329,9 +386,9 @@ HWY_INLINE bool InStep(const BytePairs& pairs, int i, int end) {
 }
 
 /// Codes of four outputs: byte o of a lane of 32 bits for output o, where lanes of one output were sums.
-HWY_INLINE V8 PackFour(const V32 (*sums)[2], int vector) {
-    const auto code = [&](int o) { return hn::ShiftRight<kPairShift>(sums[o][vector]); };
-    return PackCodes(Pack(code(0), code(1)), Pack(code(2), code(3)));
+HWY_INLINE V8 PackFour(V32 o0, V32 o1, V32 o2, V32 o3) {
+    return PackCodes(Pack(hn::ShiftRight<kPairShift>(o0), hn::ShiftRight<kPairShift>(o1)),
+                     Pack(hn::ShiftRight<kPairShift>(o2), hn::ShiftRight<kPairShift>(o3)));
 }
 
 /// Swaps rows and columns of the 4 x 4 lanes of each block.
@@ -357,11 +414,12 @@ public:
     void PixelsOfFour() {
         constexpr std::size_t blocks = kBytes / 16;  // a row each
         for (int i = begin_; i < end_; i += 4) {
-            V8 codes[2];
-            FourOutputs(i, codes);
+            V8 a, b;
+            FourOutputs(i, a, b);
+            const std::size_t at = static_cast<std::size_t>(i - begin_) * 4;
             const std::size_t wanted = static_cast<std::size_t>(std::min(4, end_ - i)) * 4;
-            for (std::size_t u = 0; u < 2; ++u)
-                StoreBlocks(codes[u], rows_ + u * blocks, 1, static_cast<std::size_t>(i - begin_) * 4, wanted);
+            StoreBlocks(a, rows_, 1, at, wanted);
+            StoreBlocks(b, rows_ + blocks, 1, at, wanted);
         }
     }
 
@@ -372,9 +430,10 @@ public:
         for (int i = begin_; i < end_; i += 16) {
             V32 lanes[2][4];  // a lane is a row, its bytes four outputs
             for (int m = 0; m < 4; ++m) {
-                V8 codes[2];
-                FourOutputs(std::min(i + 4 * m, end_ - 1), codes);
-                for (int u = 0; u < 2; ++u) lanes[u][m] = hn::BitCast(d32, hn::TableLookupBytes(codes[u], by_row));
+                V8 a, b;
+                FourOutputs(std::min(i + 4 * m, end_ - 1), a, b);
+                lanes[0][m] = hn::BitCast(d32, hn::TableLookupBytes(a, by_row));
+                lanes[1][m] = hn::BitCast(d32, hn::TableLookupBytes(b, by_row));
             }
             const std::size_t wanted = static_cast<std::size_t>(std::min(16, end_ - i));
             for (std::size_t u = 0; u < 2; ++u) {
@@ -387,19 +446,24 @@ public:
     }
 
 private:
-    HWY_INLINE void FourOutputs(int i, V8* codes) {
-        V32 sums[4][2];
-        for (auto& sum : sums) sum[0] = sum[1] = hn::Set(d32, 1 << (kPairShift - 1));
-        if (kPairs != 0 && InStep(pairs_, i, end_)) {
-            const BytePairs::Output& at = pairs_.outputs[static_cast<std::size_t>(i)];
-            V32 weights[kPairs ? kPairs : 1];
-            for (int p = 0; p < kPairs; ++p)
-                weights[p] = hn::Set(d32, pairs_.weights[at.offset + static_cast<std::size_t>(p)]);
-            SumFourInStep<kPairs>(weights, tile_ + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair), sums);
+    HWY_INLINE void FourOutputs(int i, V8& a, V8& b) {
+        FourSums sums;
+        sums.Start();
+        if constexpr (kPairs != 0) {
+            if (InStep(pairs_, i, end_)) {
+                const BytePairs::Output& at = pairs_.outputs[static_cast<std::size_t>(i)];
+                const auto weights =
+                    Broadcast(pairs_.weights.data() + at.offset, std::make_integer_sequence<int, kPairs>());
+                SumFourInStep<kPairs>(weights, tile_ + at.first_pair * static_cast<std::ptrdiff_t>(tile_pair), sums,
+                                      std::make_integer_sequence<int, kPairs + 3>());
+            } else {
+                SumFour<kPairs>(pairs_, i, end_, tile_, sums);
+            }
         } else {
-            SumFour<kPairs>(pairs_, i, end_, tile_, sums);
+            SumFour<0>(pairs_, i, end_, tile_, sums);
         }
-        for (int u = 0; u < 2; ++u) codes[u] = PackFour(sums, u);
+        a = PackFour(sums.o0.a, sums.o1.a, sums.o2.a, sums.o3.a);
+        b = PackFour(sums.o0.b, sums.o1.b, sums.o2.b, sums.o3.b);
     }
 
     const BytePairs& pairs_;

@@ -1,6 +1,7 @@
 #include "bandlimit/resample/tiles.h"
 
 #include <algorithm>
+#include <cstring>
 #include <type_traits>
 
 #include "bandlimit/core/allocator.h"
@@ -10,7 +11,7 @@
 namespace bandlimit {
 namespace {
 
-constexpr std::ptrdiff_t tile_bytes = 1 << 15;  // of inputs: stays in the first cache beside the outputs
+constexpr std::ptrdiff_t tile_bytes = 16 << 10;  // of inputs: stays in the first cache beside the outputs
 
 /// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where
 /// channels are interleaved and the run starts a pixel, else single samples.
@@ -21,10 +22,10 @@ void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
         const int run = v.dc == 1 && c == 0 && k + v.channels <= count ? v.channels : 1;
         T* const first = &v(0, y, c);
         switch (run) {  // a constant length turns each copy into one or two moves
-            case 2: copy(first, k, std::integral_constant<int, 2>()); break;
-            case 3: copy(first, k, std::integral_constant<int, 3>()); break;
-            case 4: copy(first, k, std::integral_constant<int, 4>()); break;
-            default: copy(first, k, run);
+            case 2: copy(first, k, std::integral_constant<std::size_t, 2>()); break;
+            case 3: copy(first, k, std::integral_constant<std::size_t, 3>()); break;
+            case 4: copy(first, k, std::integral_constant<std::size_t, 4>()); break;
+            default: copy(first, k, static_cast<std::size_t>(run));
         }
         k += run;
     }
@@ -45,20 +46,24 @@ public:
     void load(View<const float> v, std::ptrdiff_t lane, int count, int begin, int width, int x) const {
         if (rows_are_lanes(v))
             return rows_to_lanes(&v(begin, static_cast<int>(lane)), v.dy, count, width, at(x), stride_);
+        if (pixels_are_blocks(v))
+            return pixels_to_lanes(&v(begin, static_cast<int>(lane / 4)), v.dy, count / 4, width, at(x), stride_);
         for_each_run(v, lane, count, [&](const float* from, int k, auto run) {
             from += begin * v.dx;
             float* to = at(x) + k;
-            for (int i = 0; i < width; ++i, from += v.dx, to += stride_) std::copy_n(from, int{run}, to);
+            for (int i = 0; i < width; ++i, from += v.dx, to += stride_) std::memcpy(to, from, sizeof(float) * run);
         });
     }
     /// Tile rows [0, width) to pixels of the view from `begin` on.
     void store(View<float> v, std::ptrdiff_t lane, int count, int begin, int width) const {
         if (rows_are_lanes(v))
             return lanes_to_rows(samples_, stride_, count, width, &v(begin, static_cast<int>(lane)), v.dy);
+        if (pixels_are_blocks(v))
+            return lanes_to_pixels(samples_, stride_, count / 4, width, &v(begin, static_cast<int>(lane / 4)), v.dy);
         for_each_run(v, lane, count, [&](float* to, int k, auto run) {
             to += begin * v.dx;
             const float* from = samples_ + k;
-            for (int i = 0; i < width; ++i, to += v.dx, from += stride_) std::copy_n(from, int{run}, to);
+            for (int i = 0; i < width; ++i, to += v.dx, from += stride_) std::memcpy(to, from, sizeof(float) * run);
         });
     }
 
@@ -66,6 +71,11 @@ private:
     template <class T>
     static bool rows_are_lanes(const View<T>& v) {
         return v.channels == 1 && v.dx == 1;
+    }
+    /// Tiles begin and end with whole pixels then: their lanes are a multiple of 4.
+    template <class T>
+    static bool pixels_are_blocks(const View<T>& v) {
+        return v.channels == 4 && v.dx == 4 && v.dc == 1;
     }
 
     float* samples_ = nullptr;

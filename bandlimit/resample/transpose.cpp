@@ -1,12 +1,24 @@
 // Transposition by blocks of 4 x 4 samples, in vectors of 128 bits.
 #include "bandlimit/resample/transpose.h"
 
+#include <algorithm>
+
 #ifdef BANDLIMIT_SCALAR
 
 namespace bandlimit {
 void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
     for (int x = 0; x < width; ++x)
         for (int y = 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
+}
+void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
+                     std::ptrdiff_t stride) {
+    for (int x = 0; x < width; ++x)
+        for (int y = 0; y < count; ++y) std::copy_n(rows + y * pitch + 4 * x, 4, lanes + x * stride + 4 * y);
+}
+void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
+                     std::ptrdiff_t pitch) {
+    for (int y = 0; y < count; ++y)
+        for (int x = 0; x < width; ++x) std::copy_n(lanes + x * stride + 4 * y, 4, rows + y * pitch + 4 * x);
 }
 }  // namespace bandlimit
 
@@ -53,6 +65,37 @@ void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, 
         for (int y = x < whole_width ? whole_count : 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
 }
 
+/// One pixel of `count` rows side by side: by the blocks of a vector where as many rows are there.
+HWY_INLINE void GatherPixel(const float* rows, std::ptrdiff_t pitch, int count, float* lanes) {
+    int y = 0;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    for (; y + 4 <= count; y += 4) {
+        const float* const from = rows + y * pitch;
+        __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(from));
+        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + pitch), 1);
+        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 2 * pitch), 2);
+        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 3 * pitch), 3);
+        _mm512_storeu_ps(lanes + 4 * y, v);
+    }
+#elif HWY_TARGET == HWY_AVX2
+    for (; y + 2 <= count; y += 2) {
+        const float* const from = rows + y * pitch;
+        const __m256 v = _mm256_castps128_ps256(_mm_loadu_ps(from));
+        _mm256_storeu_ps(lanes + 4 * y, _mm256_insertf128_ps(v, _mm_loadu_ps(from + pitch), 1));
+    }
+#endif
+    for (; y < count; ++y) std::copy_n(rows + y * pitch, 4, lanes + 4 * y);
+}
+
+void PixelsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    for (int x = 0; x < width; ++x) GatherPixel(rows + 4 * x, pitch, count, lanes + x * stride);
+}
+
+void LanesToPixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows, std::ptrdiff_t pitch) {
+    for (int y = 0; y < count; ++y)
+        for (int x = 0; x < width; ++x) std::copy_n(lanes + x * stride + 4 * y, 4, rows + y * pitch + 4 * x);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace bandlimit
 HWY_AFTER_NAMESPACE();
@@ -60,6 +103,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bandlimit {
 HWY_EXPORT(RowsToLanes);
+HWY_EXPORT(PixelsToLanes);
+HWY_EXPORT(LanesToPixels);
+void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
+                     std::ptrdiff_t stride) {
+    HWY_DYNAMIC_DISPATCH(PixelsToLanes)(rows, pitch, count, width, lanes, stride);
+}
+void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
+                     std::ptrdiff_t pitch) {
+    HWY_DYNAMIC_DISPATCH(LanesToPixels)(lanes, stride, count, width, rows, pitch);
+}
 void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
     HWY_DYNAMIC_DISPATCH(RowsToLanes)(rows, pitch, count, width, lanes, stride);
 }

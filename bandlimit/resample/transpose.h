@@ -16,4 +16,12 @@ inline void lanes_to_rows(const float* lanes, std::ptrdiff_t stride, int count, 
     rows_to_lanes(lanes, stride, width, count, rows, pitch);
 }
 
+/// The same for pixels of four samples, which stay together: lanes[x * stride + 4 * y + c] = rows[y * pitch + 4 * x + c].
+void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
+                     std::ptrdiff_t stride);
+
+/// The way back.
+void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
+                     std::ptrdiff_t pitch);
+
 }  // namespace bandlimit
