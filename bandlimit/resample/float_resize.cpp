@@ -1,6 +1,7 @@
 #include "bandlimit/resample/float_resize.h"
 
 #include <algorithm>
+#include <optional>
 #include <variant>
 
 #include "bandlimit/core/allocator.h"
@@ -71,7 +72,12 @@ public:
             else if (plan_.x_first) filter_y(first, last, out_, outputs_);
             else {
                 filter_y(first, last, middle_, width_);
-                filter_x(middle_, 0, out_, 0, last - first);
+                const View<const float> middle = middle_.view(0, last - first, width_, plan_.channels);
+                if (const std::optional<View<float>> target = direct_target(first, last)) {
+                    filter_x(middle, *target);
+                    continue;
+                }
+                filter_x(middle, out_.view(0, last - first, outputs_, plan_.channels));
             }
             for (int i = first; i < last; ++i) lost |= store(i - first, i);
         }
@@ -115,9 +121,18 @@ private:
         combine(plan_.y, first, last, antiring(), lines_at_zero(), to.lines(), length(width));
     }
 
-    void filter_x(Rows& from, int first_from, Rows& to, int first_to, int count) {
-        apply_by_tiles(plan_.x, strip_.runs, from.view(first_from, count, width_, plan_.channels), strip_.read.begin,
-                       to.view(first_to, count, outputs_, plan_.channels), strip_.first(), antiring());
+    void filter_x(View<const float> from, View<float> to) {
+        apply_by_tiles(plan_.x, strip_.runs, from, strip_.read.begin, to, strip_.first(), antiring());
+    }
+
+    /// Target rows [first, last), where they are floats to be stored as they come out.
+    std::optional<View<float>> direct_target(int first, int last) const {
+        const auto* floats = std::get_if<View<float>>(&targets_);
+        const Encoding& to = target_.encoding;
+        if (!floats || to.transfer != Transfer::linear || !target_.background.empty() ||
+            (to.alpha >= 0 && premultiplied() != to.associated))
+            return {};
+        return cropped(*floats, 0, first - target_.first_row, floats->width, last - first);
     }
 
     void filter_radial(int first, int last) {
@@ -134,7 +149,8 @@ private:
         for (int done = 0; done < count; done += block_rows) {
             const int some = std::min(block_rows, count - done);
             for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
-            filter_x(decoded_, 0, held_, slot + done, some);
+            filter_x(decoded_.view(0, some, width_, plan_.channels),
+                     held_.view(slot + done, some, outputs_, plan_.channels));
         }
     }
 

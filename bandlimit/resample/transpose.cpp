@@ -56,11 +56,43 @@ HWY_INLINE void TransposeBlock(const float* rows, std::ptrdiff_t pitch, float* l
 }
 #endif
 
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+/// Block b of row k of a tall block of 16 x 4 samples comes from row 4 * b + k.
+constexpr int kTall = 16;
+HWY_INLINE __m512 LoadBlocks(const float* from, std::ptrdiff_t step) {
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(from));
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(from + step), 1);
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 2 * step), 2);
+    return _mm512_insertf32x4(v, _mm_loadu_ps(from + 3 * step), 3);
+}
+HWY_INLINE void TransposeTallBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
+    const __m512 r0 = LoadBlocks(rows, 4 * pitch), r1 = LoadBlocks(rows + pitch, 4 * pitch);
+    const __m512 r2 = LoadBlocks(rows + 2 * pitch, 4 * pitch), r3 = LoadBlocks(rows + 3 * pitch, 4 * pitch);
+    const __m512d low01 = _mm512_castps_pd(_mm512_unpacklo_ps(r0, r1));
+    const __m512d low23 = _mm512_castps_pd(_mm512_unpacklo_ps(r2, r3));
+    const __m512d high01 = _mm512_castps_pd(_mm512_unpackhi_ps(r0, r1));
+    const __m512d high23 = _mm512_castps_pd(_mm512_unpackhi_ps(r2, r3));
+    _mm512_storeu_ps(lanes, _mm512_castpd_ps(_mm512_unpacklo_pd(low01, low23)));
+    _mm512_storeu_ps(lanes + stride, _mm512_castpd_ps(_mm512_unpackhi_pd(low01, low23)));
+    _mm512_storeu_ps(lanes + 2 * stride, _mm512_castpd_ps(_mm512_unpacklo_pd(high01, high23)));
+    _mm512_storeu_ps(lanes + 3 * stride, _mm512_castpd_ps(_mm512_unpackhi_pd(high01, high23)));
+}
+#else
+constexpr int kTall = kBlock;
+HWY_INLINE void TransposeTallBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
+    TransposeBlock(rows, pitch, lanes, stride);
+}
+#endif
+
 void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
     const int whole_width = kBlock ? width & ~3 : 0, whole_count = count & ~3;
-    for (int x = 0; x < whole_width; x += kBlock)
-        for (int y = 0; y < whole_count; y += kBlock)
+    for (int x = 0; x < whole_width; x += kBlock) {
+        int y = 0;
+        for (; y + kTall <= whole_count; y += kTall)
+            TransposeTallBlock(rows + y * pitch + x, pitch, lanes + x * stride + y, stride);
+        for (; y < whole_count; y += kBlock)
             TransposeBlock(rows + y * pitch + x, pitch, lanes + x * stride + y, stride);
+    }
     for (int x = 0; x < width; ++x)
         for (int y = x < whole_width ? whole_count : 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
 }
