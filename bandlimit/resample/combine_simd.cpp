@@ -93,70 +93,134 @@ HWY_INLINE void CombineAt(D d, const Row& row, float* HWY_RESTRICT out, std::siz
     sum.Store(row, out, k);
 }
 
-/// Two outputs at once, of which the second begins `step` lines later, while the first still reads: what both read is
-/// loaded once.
+/// Four outputs, each of which begins and ends no earlier than the one before, and begins while the first still reads.
+struct FourRows {
+    Row row[4];
+    int first[4], end[4];  ///< lines read, from the first line of the first output on
+    float* out[4];
+};
+
+/// Four sums at once: what several read is loaded once.
 template <int kCount, class D>
-HWY_INLINE void CombineTwoAt(D d, const Row& a, const Row& b, int step, float* HWY_RESTRICT out_a,
-                             float* HWY_RESTRICT out_b, std::size_t k) {
-    Vectors<kCount, D> sum_a, sum_b, samples;
-    samples.Load(a.taps[0] + k);
-    sum_a.Multiply(hn::Set(d, a.weights[0]), samples);
-    for (int j = 1; j <= step; ++j) {
-        samples.Load(a.taps[j] + k);
-        sum_a.MultiplyAdd(hn::Set(d, a.weights[j]), samples);
+class FourSums {
+public:
+    HWY_INLINE FourSums(const FourRows& rows, std::size_t k) : rows_(rows), k_(k) {}
+
+    HWY_INLINE void Run() {
+        Start(0, s0_);
+        Start(1, s1_);
+        Start(2, s2_);
+        Start(3, s3_);
+        const int* const first = rows_.first;
+        const int* const end = rows_.end;
+        Add<0, 1>(first[0] + 1, first[1] + 1);
+        Add<0, 2>(first[1] + 1, first[2] + 1);
+        Add<0, 3>(first[2] + 1, first[3] + 1);
+        Add<0, 4>(first[3] + 1, end[0]);
+        Add<1, 4>(end[0], end[1]);
+        Add<2, 4>(end[1], end[2]);
+        Add<3, 4>(end[2], end[3]);
+        s0_.Store(rows_.row[0], rows_.out[0], k_);
+        s1_.Store(rows_.row[1], rows_.out[1], k_);
+        s2_.Store(rows_.row[2], rows_.out[2], k_);
+        s3_.Store(rows_.row[3], rows_.out[3], k_);
     }
-    sum_b.Multiply(hn::Set(d, b.weights[0]), samples);
-    const int shared = a.count - step;
-    for (int j = 1; j < shared; ++j) {
-        samples.Load(b.taps[j] + k);
-        sum_a.MultiplyAdd(hn::Set(d, a.weights[step + j]), samples);
-        sum_b.MultiplyAdd(hn::Set(d, b.weights[j]), samples);
+
+private:
+    HWY_INLINE void Start(int output, Vectors<kCount, D>& sum) {
+        Vectors<kCount, D> samples;
+        samples.Load(rows_.row[output].taps[0] + k_);
+        sum.Multiply(hn::Set(D(), rows_.row[output].weights[0]), samples);
     }
-    for (int j = shared; j < b.count; ++j) {
-        samples.Load(b.taps[j] + k);
-        sum_b.MultiplyAdd(hn::Set(d, b.weights[j]), samples);
+
+    /// Adds lines [begin, end) to the sums [kFirst, kLast).
+    template <int kFirst, int kLast>
+    HWY_INLINE void Add(int begin, int end) {
+        const float* const* const lines = rows_.row[0].taps;
+        for (int v = begin; v < end; ++v) {
+            Vectors<kCount, D> samples;
+            samples.Load(lines[v] + k_);
+            if constexpr (kFirst <= 0 && kLast > 0) s0_.MultiplyAdd(Weight(0, v), samples);
+            if constexpr (kFirst <= 1 && kLast > 1) s1_.MultiplyAdd(Weight(1, v), samples);
+            if constexpr (kFirst <= 2 && kLast > 2) s2_.MultiplyAdd(Weight(2, v), samples);
+            if constexpr (kFirst <= 3 && kLast > 3) s3_.MultiplyAdd(Weight(3, v), samples);
+        }
     }
-    sum_a.Store(a, out_a, k);
-    sum_b.Store(b, out_b, k);
-}
+    HWY_INLINE hn::Vec<D> Weight(int output, int v) const {
+        return hn::Set(D(), rows_.row[output].weights[v - rows_.first[output]]);
+    }
+
+    const FourRows& rows_;
+    std::size_t k_;
+    Vectors<kCount, D> s0_, s1_, s2_, s3_;
+};
 
 /// Calls at(tag, vectors side by side, sample) over samples [k, end) of lines.
-template <class At>
+template <int kCount, class At>
 HWY_INLINE void ForEachVector(std::size_t k, std::size_t end, At at) {
     const hn::ScalableTag<float> d;
     const hn::CappedTag<float, 1> one;  // the tail, with the same arithmetic as the vectors
     const std::size_t n = hn::Lanes(d);
-    for (; k + 4 * n <= end; k += 4 * n) at(d, std::integral_constant<int, 4>(), k);
+    for (; k + kCount * n <= end; k += kCount * n) at(d, std::integral_constant<int, kCount>(), k);
     for (; k + n <= end; k += n) at(d, std::integral_constant<int, 1>(), k);
     for (; k < end; ++k) at(one, std::integral_constant<int, 1>(), k);
 }
 
-void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
-    const auto row_of = [&](int i) {
-        const Bank::Row& info = bank.row_info(i);
-        return Row{bank.weights.data() + info.offset, lines + bank.first(i), info.count, info.near_begin,
-                   info.near_count, antiring};
-    };
-    // Outputs that lie together read mostly the same lines: a strip of those stays in the first cache meanwhile.
-    constexpr std::size_t strip = 1024;
-    for (std::size_t k = 0; k < length; k += strip) {
-        const std::size_t last = std::min(length, k + strip);
-        for (int i = begin; i < end; ++i) {
-            const Row a = row_of(i);
-            const int step = i + 1 < end ? bank.first(i + 1) - bank.first(i) : -1;
-            if (step >= 0 && step < a.count && a.count - step <= bank.row_info(i + 1).count) {
-                const Row b = row_of(i + 1);
-                ForEachVector(k, last, [&](auto d, auto unroll, std::size_t at) HWY_ATTR {
-                    CombineTwoAt<unroll.value>(d, a, b, step, out[i - begin], out[i + 1 - begin], at);
-                });
-                ++i;
+class Combination {
+public:
+    Combination(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out)
+        : bank_(bank), begin_(begin), end_(end), antiring_(antiring), lines_(lines), out_(out) {}
+
+    /// Samples [k, last) of all outputs.
+    void Run(std::size_t k, std::size_t last) const {
+        FourRows four;
+        for (int i = begin_; i < end_;) {
+            if (i + 4 <= end_ && Gather(i, four)) {
+                // As many sums as fit the registers.
+                constexpr int count = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 4 : 2;
+                ForEachVector<count>(k, last, [&](auto d, auto vectors, std::size_t at)
+                                                  HWY_ATTR { FourSums<vectors.value, decltype(d)>(four, at).Run(); });
+                i += 4;
             } else {
-                ForEachVector(k, last, [&](auto d, auto unroll, std::size_t at) HWY_ATTR {
-                    CombineAt<unroll.value>(d, a, out[i - begin], at);
-                });
+                const Row row = RowOf(i);
+                ForEachVector<4>(k, last, [&](auto d, auto vectors, std::size_t at)
+                                              HWY_ATTR { CombineAt<vectors.value>(d, row, out_[i - begin_], at); });
+                ++i;
             }
         }
     }
+
+private:
+    Row RowOf(int i) const {
+        const Bank::Row& info = bank_.row_info(i);
+        return {bank_.weights.data() + info.offset, lines_ + bank_.first(i), info.count, info.near_begin,
+                info.near_count, antiring_};
+    }
+
+    /// Fills in the rows of outputs i to i + 3; returns whether they may be summed together.
+    bool Gather(int i, FourRows& four) const {
+        for (int o = 0; o < 4; ++o) {
+            four.row[o] = RowOf(i + o);
+            four.out[o] = out_[i + o - begin_];
+            four.first[o] = bank_.first(i + o) - bank_.first(i);
+            four.end[o] = four.first[o] + four.row[o].count;
+            if (o > 0 && (four.first[o] < four.first[o - 1] || four.end[o] < four.end[o - 1])) return false;
+        }
+        return four.first[3] < four.end[0];
+    }
+
+    const Bank& bank_;
+    int begin_, end_;
+    float antiring_;
+    ConstLines lines_;
+    Lines out_;
+};
+
+void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
+    const Combination combination(bank, begin, end, antiring, lines, out);
+    // Outputs that lie together read mostly the same lines: a strip of those stays in the first cache meanwhile.
+    constexpr std::size_t strip = 1024;
+    for (std::size_t k = 0; k < length; k += strip) combination.Run(k, std::min(length, k + strip));
 }
 
 }  // namespace HWY_NAMESPACE

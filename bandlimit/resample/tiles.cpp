@@ -118,11 +118,11 @@ std::vector<TileRun> tile_runs(const Bank& bank) {
     return runs;
 }
 
-void apply_by_tiles(const Bank& bank, const std::vector<TileRun>& runs, View<const float> src, int first_input,
+void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
                     View<float> dst, int first_output, float antiring, std::ptrdiff_t begin, std::ptrdiff_t end) {
     thread_local std::vector<float, SampleAllocator<float>> in_scratch, out_scratch;
-    std::vector<const float*> from;
-    std::vector<float*> to;
+    thread_local std::vector<const float*> from;
+    thread_local std::vector<float*> to;
     const int widest = static_cast<int>(std::min<std::ptrdiff_t>(tile_lanes, end - begin));
     for (const TileRun& run : runs) {
         const int inputs = run.read.end - run.read.begin, outputs = run.last - run.first;

@@ -1,5 +1,6 @@
 // Horizontal filters by tiles: some lines of an image, transposed for a run of x, so that the loop over lines serves.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "bandlimit/core/view.h"
@@ -22,11 +23,11 @@ std::vector<TileRun> tile_runs(const Bank& bank);
 /// shapes   src holds inputs from first_input on: all that the runs read, or all there are; dst holds outputs from
 ///          first_output on; heights and channels are equal; src and dst must not overlap
 /// cost     beside the multiply-adds, about three moves per sample read and two per sample written
-void apply_by_tiles(const Bank& bank, const std::vector<TileRun>& runs, View<const float> src, int first_input,
+void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
                     View<float> dst, int first_output, float antiring, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// The same for all lanes.
-inline void apply_by_tiles(const Bank& bank, const std::vector<TileRun>& runs, View<const float> src, int first_input,
+inline void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
                            View<float> dst, int first_output, float antiring) {
     apply_by_tiles(bank, runs, src, first_input, dst, first_output, antiring, 0,
                    static_cast<std::ptrdiff_t>(src.height) * src.channels);
