@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #ifdef BANDLIMIT_SCALAR
 
@@ -98,6 +99,12 @@ struct FourRows {
     Row row[4];
     int first[4], end[4];  ///< lines read, from the first line of the first output on
     float* out[4];
+
+    bool is_in_step(int taps, int step) const {
+        for (int o = 0; o < 4; ++o)
+            if (row[o].count != taps || first[o] != o * step) return false;
+        return true;
+    }
 };
 
 /// Four sums at once: what several read is loaded once.
@@ -105,6 +112,13 @@ template <int kCount, class D>
 class FourSums {
 public:
     HWY_INLINE FourSums(const FourRows& rows, std::size_t k) : rows_(rows), k_(k) {}
+
+    /// The same for rows of kTaps weights each, kStep lines apart, without loops.
+    template <int kTaps, int kStep>
+    HWY_INLINE void RunInStep() {
+        AddLines<kTaps, kStep>(std::make_integer_sequence<int, kTaps + 3 * kStep>());
+        Store();
+    }
 
     HWY_INLINE void Run() {
         Start(0, s0_);
@@ -120,13 +134,36 @@ public:
         Add<1, 4>(end[0], end[1]);
         Add<2, 4>(end[1], end[2]);
         Add<3, 4>(end[2], end[3]);
+        Store();
+    }
+
+private:
+    HWY_INLINE void Store() const {
         s0_.Store(rows_.row[0], rows_.out[0], k_);
         s1_.Store(rows_.row[1], rows_.out[1], k_);
         s2_.Store(rows_.row[2], rows_.out[2], k_);
         s3_.Store(rows_.row[3], rows_.out[3], k_);
     }
 
-private:
+    template <int kTaps, int kStep, int... kLine>
+    HWY_INLINE void AddLines(std::integer_sequence<int, kLine...>) {
+        (AddLine<kTaps, kStep, kLine>(), ...);
+    }
+    template <int kTaps, int kStep, int kLine>
+    HWY_INLINE void AddLine() {
+        Vectors<kCount, D> samples;
+        samples.Load(rows_.row[0].taps[kLine] + k_);
+        AddTap<kTaps, kLine>(0, s0_, samples);
+        AddTap<kTaps, kLine - kStep>(1, s1_, samples);
+        AddTap<kTaps, kLine - 2 * kStep>(2, s2_, samples);
+        AddTap<kTaps, kLine - 3 * kStep>(3, s3_, samples);
+    }
+    template <int kTaps, int kTap>
+    HWY_INLINE void AddTap(int output, Vectors<kCount, D>& sum, const Vectors<kCount, D>& samples) {
+        if constexpr (kTap == 0) sum.Multiply(hn::Set(D(), rows_.row[output].weights[0]), samples);
+        if constexpr (kTap > 0 && kTap < kTaps) sum.MultiplyAdd(hn::Set(D(), rows_.row[output].weights[kTap]), samples);
+    }
+
     HWY_INLINE void Start(int output, Vectors<kCount, D>& sum) {
         Vectors<kCount, D> samples;
         samples.Load(rows_.row[output].taps[0] + k_);
@@ -176,10 +213,7 @@ public:
         FourRows four;
         for (int i = begin_; i < end_;) {
             if (i + 4 <= end_ && Gather(i, four)) {
-                // As many sums as fit the registers.
-                constexpr int count = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 4 : 2;
-                ForEachVector<count>(k, last, [&](auto d, auto vectors, std::size_t at)
-                                                  HWY_ATTR { FourSums<vectors.value, decltype(d)>(four, at).Run(); });
+                RunFour(four, k, last);
                 i += 4;
             } else {
                 const Row row = RowOf(i);
@@ -207,6 +241,25 @@ private:
             if (o > 0 && (four.first[o] < four.first[o - 1] || four.end[o] < four.end[o - 1])) return false;
         }
         return four.first[3] < four.end[0];
+    }
+
+    // As many sums as fit the registers.
+    static constexpr int kCount = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 4 : 2;
+
+    static void RunFour(const FourRows& four, std::size_t k, std::size_t last) {
+        // Halving, by kernels of radius 1 to 3.
+        if (four.is_in_step(12, 2)) return RunInStep<12, 2>(four, k, last);
+        if (four.is_in_step(8, 2)) return RunInStep<8, 2>(four, k, last);
+        if (four.is_in_step(4, 2)) return RunInStep<4, 2>(four, k, last);
+        ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at)
+                                           HWY_ATTR { FourSums<vectors.value, decltype(d)>(four, at).Run(); });
+    }
+
+    template <int kTaps, int kStep>
+    static void RunInStep(const FourRows& four, std::size_t k, std::size_t last) {
+        ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
+            FourSums<vectors.value, decltype(d)>(four, at).template RunInStep<kTaps, kStep>();
+        });
     }
 
     const Bank& bank_;
