@@ -7,6 +7,8 @@
 
 namespace bandlimit {
 
+// Tables for sRGB codes are built when first used: in 0.3 ms for 8 bits, in 2 (decoding) and 9 ms (encoding) for 16.
+
 /// What the stored samples of an image mean.
 struct Encoding {
     Transfer transfer = Transfer::linear;  ///< of every channel but alpha
@@ -19,7 +21,9 @@ struct Encoding {
 /// shapes   row [width * channels]
 /// range    any stored value; integers become [0, 1]
 /// `premultiplied` asks for colour multiplied by alpha; what is stored so already stays so in either case
-/// cost     a table look-up per sample of u8 and u16
+/// cost     up to 4 channels a vector look-up per colour sample of sRGB codes, arithmetic for other codes and half;
+/// floats
+///          and halves of sRGB, and more channels with alpha or not side by side, a sample at a time
 void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied, std::span<float> row);
 
 /// Writes `row` to row `y` of `image`.
@@ -27,9 +31,11 @@ void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool p
 /// `premultiplied` tells what the row holds, not what was asked of decode_row: a source that is stored associated gives
 /// premultiplied rows in either case.
 /// Integers are clamped and rounded to the nearest code of the exact transfer function; what is not finite becomes 0.
-/// Where colour is divided by alpha, zero alpha gives zero colour.
+/// Colour is divided by alpha sample by sample, correctly rounded; alpha of zero or less gives zero colour. (A product
+/// with 1 / alpha was measured: a tenth less time for sRGB bytes, and one more rounding.)
 /// shapes   row [width * channels]
 /// returns  whether a value that is not finite became the code 0
+/// cost     as decode_row, and a division per colour sample where alpha asks for it; allocates nothing
 bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& image, int y, const Encoding& stored);
 
 /// Lays `row` (channels interleaved, alpha among them) over an opaque colour, and drops alpha.
