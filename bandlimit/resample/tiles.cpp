@@ -12,6 +12,7 @@ namespace bandlimit {
 namespace {
 
 constexpr std::ptrdiff_t tile_bytes = 16 << 10;  // of inputs: stays in the first cache beside the outputs
+constexpr int run_multiple = 4;                 // pixels that fill a cache line
 
 /// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where
 /// channels are interleaved and the run starts a pixel, else single samples.
@@ -34,11 +35,12 @@ void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
 /// Some lanes of an image for a run of x.
 class Tile {
 public:
-    /// Room for `width` rows of `lanes` samples; `scratch` keeps its memory from call to call.
-    Tile(int width, int lanes, std::vector<float, SampleAllocator<float>>& scratch) : stride_((lanes + 15) & ~15) {
-        const std::size_t needed = static_cast<std::size_t>(width) * static_cast<std::size_t>(stride_);
+    /// Room for rows [-slack, width) of `lanes` samples; `scratch` keeps its memory from call to call.
+    Tile(int slack, int width, int lanes, std::vector<float, SampleAllocator<float>>& scratch)
+        : stride_((lanes + 15) & ~15) {
+        const std::size_t needed = static_cast<std::size_t>(slack + width) * static_cast<std::size_t>(stride_);
         if (scratch.size() < needed) scratch.resize(needed);
-        samples_ = scratch.data();
+        samples_ = scratch.data() + slack * stride_;
     }
     float* at(int x) const { return samples_ + x * stride_; }
 
@@ -86,7 +88,9 @@ private:
 void load_inputs(const Tile& tile, const Bank& bank, IndexRange read, View<const float> src, int first,
                  std::ptrdiff_t lane, int count) {
     const int begin = std::clamp(first, read.begin, read.end), end = std::clamp(first + src.width, begin, read.end);
-    if (begin < end) tile.load(src, lane, count, begin - first, end - begin, begin - read.begin);
+    // A few inputs more, so that blocks begin where cache lines do.
+    const int more = (begin - first) % run_multiple;
+    if (begin < end) tile.load(src, lane, count, begin - first - more, end - begin + more, begin - read.begin - more);
     const auto load_outside = [&](int v) {
         const int x = resolve(v, bank.inputs, bank.edge);
         if (x >= 0) tile.load(src, lane, count, x - first, 1, v - read.begin);
@@ -108,7 +112,8 @@ std::vector<TileRun> tile_runs(const Bank& bank) {
             const IndexRange both{std::min(run.read.begin, next.begin), std::max(run.read.end, next.end)};
             // A long row of weights takes a longer tile, or each input would be loaded many times.
             const int inputs = std::max(fitting, 4 * bank.row_info(i).count);
-            if (both.end - both.begin <= inputs && i - run.first < inputs) {
+            const bool fits = both.end - both.begin <= inputs && i - run.first < inputs;
+            if (fits || (i - run.first) % run_multiple != 0) {
                 run = {run.first, i + 1, both};
                 continue;
             }
@@ -126,7 +131,7 @@ void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const 
     const int widest = static_cast<int>(std::min<std::ptrdiff_t>(tile_lanes, end - begin));
     for (const TileRun& run : runs) {
         const int inputs = run.read.end - run.read.begin, outputs = run.last - run.first;
-        const Tile in(inputs, widest, in_scratch), out(outputs, widest, out_scratch);
+        const Tile in(run_multiple, inputs, widest, in_scratch), out(0, outputs, widest, out_scratch);
         from.clear();
         for (int i = 0; i < inputs; ++i) from.push_back(in.at(i));
         to.clear();

@@ -15,11 +15,6 @@ void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int wid
     for (int x = 0; x < width; ++x)
         for (int y = 0; y < count; ++y) std::copy_n(rows + y * pitch + 4 * x, 4, lanes + x * stride + 4 * y);
 }
-void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
-                     std::ptrdiff_t pitch) {
-    for (int y = 0; y < count; ++y)
-        for (int x = 0; x < width; ++x) std::copy_n(lanes + x * stride + 4 * y, 4, rows + y * pitch + 4 * x);
-}
 }  // namespace bandlimit
 
 #else
@@ -97,35 +92,40 @@ void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, 
         for (int y = x < whole_width ? whole_count : 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
 }
 
-/// One pixel of `count` rows side by side: by the blocks of a vector where as many rows are there.
-HWY_INLINE void GatherPixel(const float* rows, std::ptrdiff_t pitch, int count, float* lanes) {
-    int y = 0;
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    for (; y + 4 <= count; y += 4) {
-        const float* const from = rows + y * pitch;
-        __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(from));
-        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + pitch), 1);
-        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 2 * pitch), 2);
-        v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 3 * pitch), 3);
-        _mm512_storeu_ps(lanes + 4 * y, v);
-    }
-#elif HWY_TARGET == HWY_AVX2
-    for (; y + 2 <= count; y += 2) {
-        const float* const from = rows + y * pitch;
-        const __m256 v = _mm256_castps128_ps256(_mm_loadu_ps(from));
-        _mm256_storeu_ps(lanes + 4 * y, _mm256_insertf128_ps(v, _mm_loadu_ps(from + pitch), 1));
-    }
+/// Rows and columns of 4 x 4 pixels.
+constexpr int kPixels = 4;
+HWY_INLINE void TransposePixels(const float* from, std::ptrdiff_t from_step, float* to, std::ptrdiff_t to_step) {
+    const __m512 r0 = _mm512_loadu_ps(from), r1 = _mm512_loadu_ps(from + from_step);
+    const __m512 r2 = _mm512_loadu_ps(from + 2 * from_step), r3 = _mm512_loadu_ps(from + 3 * from_step);
+    const __m512 low01 = _mm512_shuffle_f32x4(r0, r1, 0x44), high01 = _mm512_shuffle_f32x4(r0, r1, 0xee);
+    const __m512 low23 = _mm512_shuffle_f32x4(r2, r3, 0x44), high23 = _mm512_shuffle_f32x4(r2, r3, 0xee);
+    _mm512_storeu_ps(to, _mm512_shuffle_f32x4(low01, low23, 0x88));
+    _mm512_storeu_ps(to + to_step, _mm512_shuffle_f32x4(low01, low23, 0xdd));
+    _mm512_storeu_ps(to + 2 * to_step, _mm512_shuffle_f32x4(high01, high23, 0x88));
+    _mm512_storeu_ps(to + 3 * to_step, _mm512_shuffle_f32x4(high01, high23, 0xdd));
+}
+#else
+constexpr int kPixels = 1;
+HWY_INLINE void TransposePixels(const float* from, std::ptrdiff_t, float* to, std::ptrdiff_t) {
+    std::copy_n(from, 4, to);
+}
 #endif
-    for (; y < count; ++y) std::copy_n(rows + y * pitch, 4, lanes + 4 * y);
+
+/// to[j * to_step + 4 * i ...] = from[i * from_step + 4 * j ...], for pixels of four samples.
+HWY_INLINE void TransposeAllPixels(const float* from, std::ptrdiff_t from_step, int rows, int columns, float* to,
+                                   std::ptrdiff_t to_step) {
+    const int whole_rows = rows / kPixels * kPixels, whole_columns = columns / kPixels * kPixels;
+    for (int j = 0; j < whole_columns; j += kPixels)
+        for (int i = 0; i < whole_rows; i += kPixels)
+            TransposePixels(from + i * from_step + 4 * j, from_step, to + j * to_step + 4 * i, to_step);
+    for (int j = 0; j < columns; ++j)
+        for (int i = j < whole_columns ? whole_rows : 0; i < rows; ++i)
+            std::copy_n(from + i * from_step + 4 * j, 4, to + j * to_step + 4 * i);
 }
 
 void PixelsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
-    for (int x = 0; x < width; ++x) GatherPixel(rows + 4 * x, pitch, count, lanes + x * stride);
-}
-
-void LanesToPixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows, std::ptrdiff_t pitch) {
-    for (int y = 0; y < count; ++y)
-        for (int x = 0; x < width; ++x) std::copy_n(lanes + x * stride + 4 * y, 4, rows + y * pitch + 4 * x);
+    TransposeAllPixels(rows, pitch, count, width, lanes, stride);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -136,14 +136,9 @@ HWY_AFTER_NAMESPACE();
 namespace bandlimit {
 HWY_EXPORT(RowsToLanes);
 HWY_EXPORT(PixelsToLanes);
-HWY_EXPORT(LanesToPixels);
 void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
                      std::ptrdiff_t stride) {
     HWY_DYNAMIC_DISPATCH(PixelsToLanes)(rows, pitch, count, width, lanes, stride);
-}
-void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
-                     std::ptrdiff_t pitch) {
-    HWY_DYNAMIC_DISPATCH(LanesToPixels)(lanes, stride, count, width, rows, pitch);
 }
 void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
     HWY_DYNAMIC_DISPATCH(RowsToLanes)(rows, pitch, count, width, lanes, stride);

@@ -20,8 +20,10 @@ inline void lanes_to_rows(const float* lanes, std::ptrdiff_t stride, int count, 
 void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
                      std::ptrdiff_t stride);
 
-/// The way back.
-void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
-                     std::ptrdiff_t pitch);
+/// The way back: rows[y * pitch + 4 * x + c] = lanes[x * stride + 4 * y + c].
+inline void lanes_to_pixels(const float* lanes, std::ptrdiff_t stride, int count, int width, float* rows,
+                            std::ptrdiff_t pitch) {
+    pixels_to_lanes(lanes, stride, width, count, rows, pitch);
+}
 
 }  // namespace bandlimit
