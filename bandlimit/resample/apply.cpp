@@ -60,12 +60,18 @@ IndexRange indices_read(const Bank& bank, int first, int last) {
 void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel, double antiring) {
     check_shapes("apply", bank, src.width, dst.width, same_lines(src, dst));
     check_antiring(antiring);
-    const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(src.height) * src.channels;
-    const bool in_place = has_contiguous_lanes(src) && has_contiguous_lanes(dst);
-    const std::vector<TileRun> runs = in_place ? std::vector<TileRun>() : tile_runs(bank);
-    parallel_for(lanes, 2 * tile_lanes, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        if (in_place) apply_in_place(bank, src, dst, static_cast<float>(antiring), begin, end);
-        else apply_by_tiles(bank, runs, src, 0, dst, 0, static_cast<float>(antiring), begin, end);
+    const auto strength = static_cast<float>(antiring);
+    if (has_contiguous_lanes(src) && has_contiguous_lanes(dst)) {
+        const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(src.height) * src.channels;
+        return parallel_for(lanes, 2 * tile_lanes, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+            apply_in_place(bank, src, dst, strength, begin, end);
+        });
+    }
+    const std::vector<TileRun> runs = tile_runs(bank);
+    parallel_for(src.height, tile_lanes, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        const int y = static_cast<int>(begin), rows = static_cast<int>(end - begin);
+        apply_by_tiles(bank, runs, cropped(src, 0, y, src.width, rows), 0, cropped(dst, 0, y, dst.width, rows), 0,
+                       strength);
     });
 }
 

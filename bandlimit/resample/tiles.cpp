@@ -1,8 +1,6 @@
 #include "bandlimit/resample/tiles.h"
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 #include "bandlimit/core/allocator.h"
 #include "bandlimit/resample/combine.h"
@@ -14,91 +12,95 @@ namespace {
 constexpr std::ptrdiff_t tile_bytes = 16 << 10;  // of inputs: stays in the first cache beside the outputs
 constexpr int run_multiple = 4;                 // pixels that fill a cache line
 
-/// Calls copy(from pixel x to tile row x) for runs of lanes that are side by side in memory: whole pixels where
-/// channels are interleaved and the run starts a pixel, else single samples.
-template <class T, class Copy>
-void for_each_run(View<T> v, std::ptrdiff_t lane, int count, Copy copy) {
-    for (int k = 0; k < count;) {
-        const int y = static_cast<int>((lane + k) / v.channels), c = static_cast<int>((lane + k) % v.channels);
-        const int run = v.dc == 1 && c == 0 && k + v.channels <= count ? v.channels : 1;
-        T* const first = &v(0, y, c);
-        switch (run) {  // a constant length turns each copy into one or two moves
-            case 2: copy(first, k, std::integral_constant<std::size_t, 2>()); break;
-            case 3: copy(first, k, std::integral_constant<std::size_t, 3>()); break;
-            case 4: copy(first, k, std::integral_constant<std::size_t, 4>()); break;
-            default: copy(first, k, static_cast<std::size_t>(run));
-        }
-        k += run;
-    }
+/// How the samples of some rows lie side by side in a tile, at each x.
+enum class Lanes {
+    by_channel,  ///< (channel, row), where rows are contiguous: samples of a row become rows of the tile
+    by_pixel,    ///< (row, channel), where rows are contiguous and pixels of four fill a block of a vector
+    scattered    ///< (row, channel), from anywhere
+};
+
+template <class T>
+bool is_interleaved(const View<T>& v) {
+    return v.dx == v.channels && (v.channels == 1 || v.dc == 1);
 }
 
-/// Some lanes of an image for a run of x.
+template <class A, class B>
+Lanes lanes_of(const View<A>& src, const View<B>& dst) {
+    if (!is_interleaved(src) || !is_interleaved(dst)) return Lanes::scattered;
+    return src.channels == 4 ? Lanes::by_pixel : Lanes::by_channel;
+}
+
+/// Some rows of an image for a run of x.
 class Tile {
 public:
-    /// Room for rows [-slack, width) of `lanes` samples; `scratch` keeps its memory from call to call.
-    Tile(int slack, int width, int lanes, std::vector<float, SampleAllocator<float>>& scratch)
-        : stride_((lanes + 15) & ~15) {
+    /// Room for pixels [-slack, width) of so many rows; `scratch` keeps its memory from call to call.
+    Tile(Lanes lanes, int rows, int channels, int slack, int width, std::vector<float, SampleAllocator<float>>& scratch)
+        : lanes_(lanes), rows_(rows), stride_(std::ptrdiff_t{rows} * channels) {
         const std::size_t needed = static_cast<std::size_t>(slack + width) * static_cast<std::size_t>(stride_);
         if (scratch.size() < needed) scratch.resize(needed);
         samples_ = scratch.data() + slack * stride_;
     }
     float* at(int x) const { return samples_ + x * stride_; }
 
-    /// Pixels [begin, begin + width) of the view to tile rows from x on.
-    void load(View<const float> v, std::ptrdiff_t lane, int count, int begin, int width, int x) const {
-        if (rows_are_lanes(v))
-            return rows_to_lanes(&v(begin, static_cast<int>(lane)), v.dy, count, width, at(x), stride_);
-        if (pixels_are_blocks(v))
-            return pixels_to_lanes(&v(begin, static_cast<int>(lane / 4)), v.dy, count / 4, width, at(x), stride_);
-        for_each_run(v, lane, count, [&](const float* from, int k, auto run) {
-            from += begin * v.dx;
-            float* to = at(x) + k;
-            for (int i = 0; i < width; ++i, from += v.dx, to += stride_) std::memcpy(to, from, sizeof(float) * run);
-        });
+    /// Pixels [begin, begin + width) of the view, which has the tile's rows, to the tile from x on.
+    void load(View<const float> v, int begin, int width, int x) const {
+        const float* const from = &v(begin, 0);
+        switch (lanes_) {
+            case Lanes::by_channel: return rows_to_lanes(from, v.dy, rows_, width * v.channels, at(x), rows_);
+            case Lanes::by_pixel: return pixels_to_lanes(from, v.dy, rows_, width, at(x), stride_);
+            case Lanes::scattered:
+                return for_each_row(v, begin, [&](const float* row, int lane) {
+                    float* to = at(x) + lane;
+                    for (int i = 0; i < width; ++i, row += v.dx, to += stride_) *to = *row;
+                });
+        }
     }
-    /// Tile rows [0, width) to pixels of the view from `begin` on.
-    void store(View<float> v, std::ptrdiff_t lane, int count, int begin, int width) const {
-        if (rows_are_lanes(v))
-            return lanes_to_rows(samples_, stride_, count, width, &v(begin, static_cast<int>(lane)), v.dy);
-        if (pixels_are_blocks(v))
-            return lanes_to_pixels(samples_, stride_, count / 4, width, &v(begin, static_cast<int>(lane / 4)), v.dy);
-        for_each_run(v, lane, count, [&](float* to, int k, auto run) {
-            to += begin * v.dx;
-            const float* from = samples_ + k;
-            for (int i = 0; i < width; ++i, to += v.dx, from += stride_) std::memcpy(to, from, sizeof(float) * run);
-        });
+    /// Pixels [0, width) of the tile to the view from `begin` on.
+    void store(View<float> v, int begin, int width) const {
+        float* const to = &v(begin, 0);
+        switch (lanes_) {
+            case Lanes::by_channel: return lanes_to_rows(samples_, rows_, rows_, width * v.channels, to, v.dy);
+            case Lanes::by_pixel: return lanes_to_pixels(samples_, stride_, rows_, width, to, v.dy);
+            case Lanes::scattered:
+                return for_each_row(v, begin, [&](float* row, int lane) {
+                    const float* from = samples_ + lane;
+                    for (int i = 0; i < width; ++i, row += v.dx, from += stride_) *row = *from;
+                });
+        }
     }
 
 private:
-    template <class T>
-    static bool rows_are_lanes(const View<T>& v) {
-        return v.channels == 1 && v.dx == 1;
-    }
-    /// Tiles begin and end with whole pixels then: their lanes are a multiple of 4.
-    template <class T>
-    static bool pixels_are_blocks(const View<T>& v) {
-        return v.channels == 4 && v.dx == 4 && v.dc == 1;
+    /// Calls visit(pixel `begin` of one channel of a row, its lane).
+    template <class T, class Visit>
+    void for_each_row(View<T> v, int begin, Visit visit) const {
+        for (int y = 0; y < rows_; ++y)
+            for (int c = 0; c < v.channels; ++c) visit(&v(begin, y, c), y * v.channels + c);
     }
 
-    float* samples_ = nullptr;
+    Lanes lanes_;
+    int rows_;
     std::ptrdiff_t stride_;
+    float* samples_ = nullptr;
 };
 
 /// Loads what a run of outputs reads; the edge resolves what lies outside of src, which begins at input `first`.
 void load_inputs(const Tile& tile, const Bank& bank, IndexRange read, View<const float> src, int first,
-                 std::ptrdiff_t lane, int count) {
+                 std::size_t lanes) {
     const int begin = std::clamp(first, read.begin, read.end), end = std::clamp(first + src.width, begin, read.end);
     // A few inputs more, so that blocks begin where cache lines do.
     const int more = (begin - first) % run_multiple;
-    if (begin < end) tile.load(src, lane, count, begin - first - more, end - begin + more, begin - read.begin - more);
+    if (begin < end) tile.load(src, begin - first - more, end - begin + more, begin - read.begin - more);
     const auto load_outside = [&](int v) {
         const int x = resolve(v, bank.inputs, bank.edge);
-        if (x >= 0) tile.load(src, lane, count, x - first, 1, v - read.begin);
-        else std::fill_n(tile.at(v - read.begin), count, 0.0f);
+        if (x >= 0) tile.load(src, x - first, 1, v - read.begin);
+        else std::fill_n(tile.at(v - read.begin), lanes, 0.0f);
     };
     for (int v = read.begin; v < begin; ++v) load_outside(v);
     for (int v = end; v < read.end; ++v) load_outside(v);
 }
+
+/// As many rows as fill a tile, in whole vectors where their samples are side by side.
+int rows_of_tile(int channels) { return std::max(1, tile_lanes / channels < 16 ? tile_lanes / channels : tile_lanes / channels / 16 * 16); }
 
 }  // namespace
 
@@ -124,24 +126,28 @@ std::vector<TileRun> tile_runs(const Bank& bank) {
 }
 
 void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
-                    View<float> dst, int first_output, float antiring, std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    View<float> dst, int first_output, float antiring) {
     thread_local std::vector<float, SampleAllocator<float>> in_scratch, out_scratch;
     thread_local std::vector<const float*> from;
     thread_local std::vector<float*> to;
-    const int widest = static_cast<int>(std::min<std::ptrdiff_t>(tile_lanes, end - begin));
-    for (const TileRun& run : runs) {
-        const int inputs = run.read.end - run.read.begin, outputs = run.last - run.first;
-        const Tile in(run_multiple, inputs, widest, in_scratch), out(0, outputs, widest, out_scratch);
-        from.clear();
-        for (int i = 0; i < inputs; ++i) from.push_back(in.at(i));
-        to.clear();
-        for (int i = 0; i < outputs; ++i) to.push_back(out.at(i));
-        for (std::ptrdiff_t lane = begin; lane < end; lane += tile_lanes) {
-            const int count = static_cast<int>(std::min<std::ptrdiff_t>(tile_lanes, end - lane));
-            load_inputs(in, bank, run.read, src, first_input, lane, count);
-            combine(bank, run.first, run.last, antiring, from.data() - run.read.begin, to.data(),
-                    static_cast<std::size_t>(count));
-            out.store(dst, lane, count, run.first - first_output, outputs);
+    const Lanes lanes = lanes_of(src, dst);
+    const int most = rows_of_tile(src.channels);
+    for (int y = 0; y < src.height; y += most) {
+        const int rows = std::min(most, src.height - y);
+        const auto length = static_cast<std::size_t>(rows) * static_cast<std::size_t>(src.channels);
+        const View<const float> src_rows = cropped(src, 0, y, src.width, rows);
+        const View<float> dst_rows = cropped(dst, 0, y, dst.width, rows);
+        for (const TileRun& run : runs) {
+            const int inputs = run.read.end - run.read.begin, outputs = run.last - run.first;
+            const Tile in(lanes, rows, src.channels, run_multiple, inputs, in_scratch);
+            const Tile out(lanes, rows, src.channels, 0, outputs, out_scratch);
+            from.clear();
+            for (int i = 0; i < inputs; ++i) from.push_back(in.at(i));
+            to.clear();
+            for (int i = 0; i < outputs; ++i) to.push_back(out.at(i));
+            load_inputs(in, bank, run.read, src_rows, first_input, length);
+            combine(bank, run.first, run.last, antiring, from.data() - run.read.begin, to.data(), length);
+            out.store(dst_rows, run.first - first_output, outputs);
         }
     }
 }

@@ -8,7 +8,7 @@
 
 namespace bandlimit {
 
-/// Lanes, that is samples at one x in the order (y, channel), of a tile: four vectors of 512 bits.
+/// Samples side by side in a tile: four vectors of 512 bits.
 constexpr int tile_lanes = 64;
 
 /// A run of outputs [first, last) whose inputs fit a tile.
@@ -18,19 +18,12 @@ struct TileRun {
 };
 std::vector<TileRun> tile_runs(const Bank& bank);
 
-/// Runs lanes [begin, end) of the views through the bank, by way of tiles of `runs`, which are some of tile_runs(bank).
+/// Runs the rows of src through the bank, by way of tiles of `runs`, which are some of tile_runs(bank).
 ///
 /// shapes   src holds inputs from first_input on: all that the runs read, or all there are; dst holds outputs from
 ///          first_output on; heights and channels are equal; src and dst must not overlap
 /// cost     beside the multiply-adds, about three moves per sample read and two per sample written
 void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
-                    View<float> dst, int first_output, float antiring, std::ptrdiff_t begin, std::ptrdiff_t end);
-
-/// The same for all lanes.
-inline void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
-                           View<float> dst, int first_output, float antiring) {
-    apply_by_tiles(bank, runs, src, first_input, dst, first_output, antiring, 0,
-                   static_cast<std::ptrdiff_t>(src.height) * src.channels);
-}
+                    View<float> dst, int first_output, float antiring);
 
 }  // namespace bandlimit
