@@ -248,8 +248,8 @@ void add_resize(Program& program) {
         ->type_name("H");
     verb->add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3")->type_name("S");
     verb->add_option("--kernel", o->kernel,
-                     "Kernel (bandlimit analyze --list), or a taps.json; auto: lanczos3 along an axis that shrinks,\n"
-                     "mitchell along one that grows")
+                     "Kernel (bandlimit analyze --list), or a taps.json; auto: shrink3 along an axis that shrinks,\n"
+                     "grow3 along one that grows or keeps its size")
         ->type_name("K|auto");
     add_edge(verb, o->edge);
     verb->add_option_function<std::string>(

@@ -100,6 +100,32 @@ Kernel bspline() { return renamed(cubic(1, 0), "bspline"); }
 Kernel catmull_rom() { return renamed(cubic(0, 0.5), "catmull-rom"); }
 Kernel mitchell() { return renamed(cubic(1.0 / 3, 1.0 / 3), "mitchell"); }
 
+Kernel magic_sharp_2013() {
+    // J. Costella, "The Magic Kernel", johncostella.com/magic, 2021: m(x) behind the taps -1/4, 3/2, -1/4.
+    const auto value = [](double x) {
+        x = std::abs(x);
+        if (x < 0.5) return 17 / 16.0 - 7 / 4.0 * x * x;
+        if (x < 1.5) return (x - 1) * (x - 7 / 4.0);
+        if (x < 2.5) return -(x - 2.5) * (x - 2.5) / 8;
+        return 0.0;
+    };
+    return {"magic-sharp-2013", 2.5, value, Kernel::Form::separable, {0.5, 1.5}};
+}
+
+Kernel magic_sharp_2021() {
+    // The same source, with more taps.
+    const auto value = [](double x) {
+        x = std::abs(x);
+        if (x < 0.5) return 577 / 576.0 - 239 / 144.0 * x * x;
+        if (x < 1.5) return 35 / 36.0 * (x - 1) * (x - 239 / 140.0);
+        if (x < 2.5) return (x - 2) * (65 / 24.0 - x) / 6;
+        if (x < 3.5) return (x - 3) * (x - 15 / 4.0) / 36;
+        if (x < 4.5) return -(x - 4.5) * (x - 4.5) / 288;
+        return 0.0;
+    };
+    return {"magic-sharp-2021", 4.5, value, Kernel::Form::separable, {0.5, 1.5, 2.5, 3.5}};
+}
+
 Kernel lanczos(int lobes) {
     check_lobes("lanczos", lobes);
     const auto value = [lobes](double x) { return std::abs(x) < lobes ? sinc(x) * sinc(x / lobes) : 0; };

@@ -44,6 +44,14 @@ Kernel bspline();
 Kernel catmull_rom();
 Kernel mitchell();
 
+/// radius 5/2 and 9/2: Costella's Magic Kernel, the quadratic B-spline, behind the sharpening of 2013 or 2021.
+Kernel magic_sharp_2013();
+Kernel magic_sharp_2021();
+
+/// radius 3: the least-squares kernels that `auto` takes, to shrink and to grow or stay. See least_squares.cpp.
+Kernel shrink3();  ///< approximating
+Kernel grow3();    ///< interpolating
+
 Kernel lanczos(int lobes);                  ///< radius lobes >= 1: sinc(x) sinc(x / lobes)
 Kernel truncated_sinc(double radius);       ///< radius > 0: sinc(x), cut off
 Kernel gaussian(double sigma);              ///< exp(-x^2 / (2 sigma^2)), radius 4 sigma (3.4e-4 of the peak is cut off)

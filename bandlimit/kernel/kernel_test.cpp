@@ -74,25 +74,27 @@ TEST(Kernel, IsTheMeanOfBothSidesWhereItJumps) {
 TEST(Kernel, InterpolatingOnesAreExactAtIntegers) {
     for (const Kernel& kernel : {nearest(), box(), tent(), quadratic_interpolating(), catmull_rom(), cubic(0, 1),
                                  cubic(0, 0), lanczos(1), lanczos(2), lanczos(3), lanczos(7), truncated_sinc(4),
-                                 truncated_sinc(2.5), kaiser(4, 6), kaiser(2.5, 9), radial_lanczos(2)}) {
+                                 truncated_sinc(2.5), kaiser(4, 6), kaiser(2.5, 9), radial_lanczos(2), grow3()}) {
         EXPECT_EQ(kernel.value(0), 1) << kernel.name;
         for (int k = 1; k <= 9; ++k) EXPECT_EQ(kernel.value(k), 0) << kernel.name << ' ' << k;
     }
 }
 
 TEST(Kernel, SumOfShiftedCopiesIsOneForTheSplinesAndCubics) {
-    for (const Kernel& kernel : {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(),
-                                 mitchell(), cubic(0.7, -0.2), box()})
+    for (const Kernel& kernel :
+         {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(), mitchell(),
+          cubic(0.7, -0.2), box(), magic_sharp_2013(), magic_sharp_2021(), shrink3(), grow3()})
         for (double phase = 0; phase < 1; phase += 0x1p-6) {
             double sum = 0;
-            for (int k = -3; k <= 3; ++k) sum += kernel.value(k - phase);
+            for (int k = -5; k <= 5; ++k) sum += kernel.value(k - phase);
             ASSERT_NEAR(sum, 1, 1e-15) << kernel.name << ' ' << phase;
         }
 }
 
 TEST(Kernel, IntegralIsOneWhereItShouldBe) {
-    for (const Kernel& kernel : {nearest(), box(), tent(), quadratic_bspline(), quadratic_interpolating(), bspline(),
-                                 catmull_rom(), mitchell(), cubic(0.3, 0.6)})
+    for (const Kernel& kernel :
+         {nearest(), box(), tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(),
+          mitchell(), cubic(0.3, 0.6), magic_sharp_2013(), magic_sharp_2021(), shrink3(), grow3()})
         EXPECT_NEAR(integral(kernel), 1, 1e-14) << kernel.name;
     // Of a Gaussian erf(4 / sqrt 2) lies within 4 sigma.
     EXPECT_NEAR(integral(gaussian(0.5)), 0.5 * std::sqrt(2 * std::numbers::pi) * std::erf(4 / std::sqrt(2.0)), 1e-14);
@@ -110,8 +112,8 @@ TEST(Kernel, KnotsLieInsideAndMarkEveryJumpOfPiecewisePolynomials) {
         }
     // Fourth differences vanish, to rounding, within a piece of degree 3 or less, and across a knot they do not.
     const double h = 0x1p-10;
-    for (const Kernel& kernel :
-         {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(), mitchell()}) {
+    for (const Kernel& kernel : {tent(), quadratic_bspline(), quadratic_interpolating(), bspline(), catmull_rom(),
+                                 mitchell(), magic_sharp_2013(), magic_sharp_2021()}) {
         const auto fourth = [&](double x) {
             const auto& f = kernel.value;
             return f(x - 2 * h) - 4 * f(x - h) + 6 * f(x) - 4 * f(x + h) + f(x + 2 * h);
@@ -144,6 +146,11 @@ TEST(Kernel, KnownValues) {
     EXPECT_NEAR(lanczos(2).value(0.5), half * std::sin(std::numbers::pi / 4) / (std::numbers::pi / 4), 1e-15);
     EXPECT_NEAR(gaussian(0.5).value(0.5), std::exp(-0.5), 1e-15);
     EXPECT_NEAR(blackman_harris().value(1), std::exp(-2.29), 1e-15);
+    // The quadratic B-spline behind -1/4, 3/2, -1/4.
+    for (double x = 0; x < 3; x += 0x1p-5) {
+        const auto spline = quadratic_bspline().value;
+        ASSERT_NEAR(magic_sharp_2013().value(x), 1.5 * spline(x) - 0.25 * (spline(x - 1) + spline(x + 1)), 1e-15) << x;
+    }
 }
 
 TEST(Kernel, BlackmanHarrisFitsItsWindow) {

@@ -63,7 +63,7 @@ Shape shape_of(const Any& view) {
 }  // namespace
 
 Kernel auto_kernel(const Axis& src, const Axis& dst) {
-    return Mapping(src, dst).step() >= 1 || Mapping(src, dst).step() <= -1 ? lanczos(3) : mitchell();
+    return std::abs(Mapping(src, dst).step()) > 1 ? shrink3() : grow3();
 }
 
 Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options) {

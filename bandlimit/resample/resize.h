@@ -14,7 +14,7 @@
 
 namespace bandlimit {
 
-/// Picks a kernel per axis: lanczos3 where the image shrinks or keeps its size, mitchell where it grows.
+/// Picks a kernel per axis: shrink3 where the image shrinks, grow3 where it grows or keeps its size.
 struct Auto {};
 
 /// What makes the weights.

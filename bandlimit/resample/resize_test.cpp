@@ -257,11 +257,11 @@ TEST(Resizer, ReportsWhatIsNotFinite) {
     EXPECT_TRUE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}));
 }
 
-TEST(Resizer, AutoShrinksWithLanczosAndGrowsWithMitchell) {
-    EXPECT_EQ(Resizer({{9}, {9}}, {{9}, {10}}, 1).kernel_x(), "lanczos3");
-    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_x(), "lanczos3");
-    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_y(), "mitchell");
-    EXPECT_EQ(Resizer({{9}, {9}}, {{8, 1, 0}, {10, 1, 0}}, 1).kernel_x(), "lanczos3");
+TEST(Resizer, AutoShrinksWithOneKernelAndGrowsOrStaysWithAnother) {
+    EXPECT_EQ(Resizer({{9}, {9}}, {{9}, {10}}, 1).kernel_x(), "grow3");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_x(), "shrink3");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8}, {10}}, 1).kernel_y(), "grow3");
+    EXPECT_EQ(Resizer({{9}, {9}}, {{8, 1, 0}, {10, 1, 0}}, 1).kernel_x(), "shrink3");
 }
 
 TEST(Resizer, RefusesWhatDoesNotFit) {
