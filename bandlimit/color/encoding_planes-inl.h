@@ -72,6 +72,10 @@ HWY_INLINE hn::Vec<RawTag<T>> Narrow(Lanes<T> lanes) {
     if constexpr (std::is_same_v<T, float>) return lanes;
     else if constexpr (std::is_same_v<T, Half>)
         return hn::BitCast(d, hn::DemoteTo(hn::Rebind<hwy::float16_t, decltype(df)>(), lanes));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    // Highway 1.0.3 truncates to bytes by the wrong permutation where it has AVX3_DL.
+    else if constexpr (sizeof(T) == 1) return hn::Vec<RawTag<T>>{_mm512_cvtepi32_epi8(lanes.raw)};
+#endif
     else return hn::TruncateTo(d, hn::BitCast(du, lanes));
 }
 

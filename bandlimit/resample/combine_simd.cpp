@@ -69,8 +69,8 @@ struct Vectors {
     }
     HWY_INLINE void Store(const Row& row, float* HWY_RESTRICT out, std::size_t k) const {
         const bool limits = row.antiring > 0;
-        hn::StoreU(limits ? Limited(D(), first, row.taps + row.near_begin, row.near_count, k, row.antiring) : first, D(),
-                   out + k);
+        hn::StoreU(limits ? Limited(D(), first, row.taps + row.near_begin, row.near_count, k, row.antiring) : first,
+                   D(), out + k);
         rest.Store(row, out, k + hn::Lanes(D()));
     }
 };
@@ -217,8 +217,9 @@ public:
                 i += 4;
             } else {
                 const Row row = RowOf(i);
-                ForEachVector<4>(k, last, [&](auto d, auto vectors, std::size_t at)
-                                              HWY_ATTR { CombineAt<vectors.value>(d, row, out_[i - begin_], at); });
+                ForEachVector<4>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
+                    CombineAt<vectors.value>(d, row, out_[i - begin_], at);
+                });
                 ++i;
             }
         }
@@ -227,8 +228,12 @@ public:
 private:
     Row RowOf(int i) const {
         const Bank::Row& info = bank_.row_info(i);
-        return {bank_.weights.data() + info.offset, lines_ + bank_.first(i), info.count, info.near_begin,
-                info.near_count, antiring_};
+        return {bank_.weights.data() + info.offset,
+                lines_ + bank_.first(i),
+                info.count,
+                info.near_begin,
+                info.near_count,
+                antiring_};
     }
 
     /// Fills in the rows of outputs i to i + 3; returns whether they may be summed together.
@@ -251,8 +256,9 @@ private:
         if (four.is_in_step(12, 2)) return RunInStep<12, 2>(four, k, last);
         if (four.is_in_step(8, 2)) return RunInStep<8, 2>(four, k, last);
         if (four.is_in_step(4, 2)) return RunInStep<4, 2>(four, k, last);
-        ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at)
-                                           HWY_ATTR { FourSums<vectors.value, decltype(d)>(four, at).Run(); });
+        ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
+            FourSums<vectors.value, decltype(d)>(four, at).Run();
+        });
     }
 
     template <int kTaps, int kStep>

@@ -129,11 +129,13 @@ private:
         }
     }
 
-    /// Asks for the inputs of a run in the rows that the next block will read first: memory has nothing to do meanwhile.
+    /// Asks for the inputs of a run in the rows that the next block will read first: memory has nothing to do
+    /// meanwhile.
     void prefetch([[maybe_unused]] const TileRun& run) const {
 #ifdef __GNUC__
         constexpr std::size_t cache_line = 64 / sizeof(float);
-        const std::size_t begin = length(run.read.begin - strip_.read.begin), end = length(run.read.end - strip_.read.begin);
+        const std::size_t begin = length(run.read.begin - strip_.read.begin),
+                          end = length(run.read.end - strip_.read.begin);
         for (const float* row : ahead_)
             for (std::size_t k = begin; k < end; k += cache_line) __builtin_prefetch(row + k, 0, 2);
 #endif

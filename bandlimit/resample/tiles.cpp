@@ -10,7 +10,7 @@ namespace bandlimit {
 namespace {
 
 constexpr std::ptrdiff_t tile_bytes = 16 << 10;  // of inputs: stays in the first cache beside the outputs
-constexpr int run_multiple = 4;                 // pixels that fill a cache line
+constexpr int run_multiple = 4;                  // pixels that fill a cache line
 
 /// How the samples of some rows lie side by side in a tile, at each x.
 enum class Lanes {
@@ -100,7 +100,9 @@ void load_inputs(const Tile& tile, const Bank& bank, IndexRange read, View<const
 }
 
 /// As many rows as fill a tile, in whole vectors where their samples are side by side.
-int rows_of_tile(int channels) { return std::max(1, tile_lanes / channels < 16 ? tile_lanes / channels : tile_lanes / channels / 16 * 16); }
+int rows_of_tile(int channels) {
+    return std::max(1, tile_lanes / channels < 16 ? tile_lanes / channels : tile_lanes / channels / 16 * 16);
+}
 
 }  // namespace
 

@@ -16,7 +16,8 @@ inline void lanes_to_rows(const float* lanes, std::ptrdiff_t stride, int count, 
     rows_to_lanes(lanes, stride, width, count, rows, pitch);
 }
 
-/// The same for pixels of four samples, which stay together: lanes[x * stride + 4 * y + c] = rows[y * pitch + 4 * x + c].
+/// The same for pixels of four samples, which stay together: lanes[x * stride + 4 * y + c] = rows[y * pitch + 4 * x +
+/// c].
 void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
                      std::ptrdiff_t stride);
 
