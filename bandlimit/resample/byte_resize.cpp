@@ -16,7 +16,8 @@ namespace {
 template <class T>
 using Samples = std::vector<T, SampleAllocator<T>>;
 
-constexpr std::size_t strip_bytes = 32 << 10;  // of interleaved rows and tile: they stay in the first cache
+constexpr std::size_t first_cache = 32 << 10;  // for a part of the rows and of the tile
+constexpr double second_cache = 768 << 10;     // for the rows of a strip
 
 /// Whether the samples of channels [c, c + count) lie as the loops take them.
 template <class T>
@@ -70,12 +71,14 @@ private:
     Samples<std::uint8_t> copies_;
 };
 
-/// Computes rows of the output from the channels [c, c + count) of the views, as samples of `pixel`.
+/// Computes the columns of a strip from the channels [c, c + count) of the views, as samples of `pixel`.
 class ByteRun {
 public:
     ByteRun(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
-            int first_target, int c, int count, Pixel pixel)
+            int first_target, int c, int count, Pixel pixel, const ByteStrip& strip)
         : plan_(plan),
+          strip_(strip),
+          inside_{std::max(strip.read.begin, 0) & ~1, std::min(strip.read.end, src.width)},
           x_(*plan.banks.x.bank),
           y_(*plan.banks.y.bank),
           dst_(dst),
@@ -86,17 +89,17 @@ public:
           pixel_(pixel),
           lanes_(static_cast<std::size_t>(pixel)),
           block_(tile_rows(pixel)),
-          reader_(src, c, count, pixel),
+          reader_(cropped(src, inside_.begin, 0, inside_.end - inside_.begin, src.height), c, count, pixel),
           padded_(whole_columns(reader_.bytes())),
-          reads_(indices_read(x_, 0, x_.output_count())),
-          left_(std::max(0, -(reads_.begin >> 1))) {
-        const std::size_t pairs = static_cast<std::size_t>(left_) + padded_ / lanes_ / 2 +
-                                  static_cast<std::size_t>(std::max(0, reads_.end - x_.inputs) / 2 + plan.pairs.count);
+          left_(std::max(0, -(strip.read.begin >> 1))) {
+        const std::size_t pairs =
+            static_cast<std::size_t>(left_) + padded_ / lanes_ / 2 +
+            static_cast<std::size_t>(std::max(0, strip.read.end - x_.inputs) / 2 + plan.pairs.count);
         tile_.resize(pairs * tile_pair);
         if (pixel == Pixel::one) middle_.resize(2 * pairs * static_cast<std::size_t>(block_));
         pitch_ = 2 * pairs;
         if (!is_in_place(dst, count, pixel))
-            out_.resize(static_cast<std::size_t>(block_) * static_cast<std::size_t>(dst.width) * lanes_);
+            out_.resize(static_cast<std::size_t>(block_) * static_cast<std::size_t>(strip.last - strip.first) * lanes_);
     }
 
     void rows(int begin, int end) {
@@ -149,7 +152,7 @@ private:
         // Output rows that lie together read mostly the same groups: a strip of those stays in the first cache.
         const std::size_t tile_bytes_per_column_byte = tile_pair / 4;
         const std::size_t strip =
-            std::max<std::size_t>(strip_bytes / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) * 2 *
+            std::max<std::size_t>(first_cache / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) * 2 *
             byte_column;
         for (std::size_t k = 0; k < padded_; k += strip)
             for (int r = 0; r < last - first; ++r) {
@@ -173,13 +176,14 @@ private:
         return ahead_;
     }
 
-    /// Where pixel 0 of row r lies after filter_y().
+    /// Where the first pixel that is inside the image lies in row r after filter_y().
     std::int16_t* row(int r) {
         return pixel_ == Pixel::one ? middle_.data() + static_cast<std::size_t>(r) * pitch_ + 2 * left_
                                     : tile() + 8 * r;
     }
     std::int16_t* tile() { return tile_.data() + static_cast<std::size_t>(left_) * tile_pair; }
-    std::ptrdiff_t place(int v, int c) const {
+    std::ptrdiff_t place(int x, int c) const {
+        const int v = x - inside_.begin;
         return pixel_ == Pixel::one ? v : (v >> 1) * static_cast<std::ptrdiff_t>(tile_pair) + 2 * c + (v & 1);
     }
 
@@ -189,8 +193,8 @@ private:
             const int from = resolve(v, x_.inputs, x_.edge);
             for (int c = 0; c < static_cast<int>(lanes_); ++c) samples[place(v, c)] = samples[place(from, c)];
         };
-        for (int v = reads_.begin; v < 0; ++v) fill(v);
-        for (int v = x_.inputs; v < reads_.end; ++v) fill(v);
+        for (int v = strip_.read.begin; v < 0; ++v) fill(v);
+        for (int v = x_.inputs; v < strip_.read.end; ++v) fill(v);
     }
 
     void filter_x(int first, int last) {
@@ -198,27 +202,32 @@ private:
             rows_to_lanes(reinterpret_cast<const float*>(middle_.data()), static_cast<std::ptrdiff_t>(pitch_ / 2),
                           block_, static_cast<int>(pitch_ / 2), reinterpret_cast<float*>(tile_.data()), tile_pair / 2);
         std::array<std::uint8_t*, tile_rows(Pixel::one)> rows{};
-        const std::size_t length = static_cast<std::size_t>(x_.output_count()) * lanes_;
+        const std::size_t length = static_cast<std::size_t>(strip_.last - strip_.first) * lanes_;
         for (int i = first; i < last; ++i) {
             const auto r = static_cast<std::size_t>(i - first);
-            rows[r] = out_.empty() ? &dst_(0, i - first_target_, c_) : out_.data() + r * length;
+            rows[r] = out_.empty() ? &dst_(strip_.first, i - first_target_, c_) : out_.data() + r * length;
         }
-        combine_byte_pairs(plan_.pairs, 0, x_.output_count(), tile(), pixel_, rows.data());
+        const std::ptrdiff_t first_pair = inside_.begin / 2;
+        combine_byte_pairs(plan_.pairs, strip_.first, strip_.last,
+                           tile() - first_pair * static_cast<std::ptrdiff_t>(tile_pair), pixel_, rows.data());
         if (out_.empty()) return;
         for (int i = first; i < last; ++i) scatter(rows[static_cast<std::size_t>(i - first)], i - first_target_);
     }
 
     void scatter(const std::uint8_t* samples, int y) const {
         if (is_narrow(dst_, count_, pixel_))
-            return narrow_pixels(samples, count_, static_cast<std::size_t>(dst_.width), &dst_(0, y, c_));
+            return narrow_pixels(samples, count_, static_cast<std::size_t>(strip_.last - strip_.first),
+                                 &dst_(strip_.first, y, c_));
         for (int c = 0; c < count_; ++c) {
-            std::uint8_t* to = &dst_(0, y, c_ + c);
+            std::uint8_t* to = &dst_(strip_.first, y, c_ + c);
             const std::uint8_t* from = samples + c;
-            for (int x = 0; x < dst_.width; ++x, to += dst_.dx, from += lanes_) *to = *from;
+            for (int x = strip_.first; x < strip_.last; ++x, to += dst_.dx, from += lanes_) *to = *from;
         }
     }
 
     const BytePlan& plan_;
+    const ByteStrip& strip_;
+    IndexRange inside_;  ///< the source columns of the strip that exist, from an even one on
     const Bank &x_, &y_;
     View<std::uint8_t> dst_;
     int first_source_, first_target_, c_, count_;
@@ -227,7 +236,7 @@ private:
     int block_;  ///< output rows computed together
     SourceReader reader_;
     std::size_t padded_;
-    IndexRange reads_, rows_read_;
+    IndexRange rows_read_;
     int rows_end_ = 0;
     int left_;  ///< pairs of pixels left of the picture
     std::size_t pitch_ = 0;
@@ -237,6 +246,26 @@ private:
     std::vector<ByteColumnTaps> taps_;
     std::vector<const std::uint8_t*> lines_, ahead_;
 };
+
+/// Strips whose source rows, as many as a block of output rows reads, fit the second cache.
+std::vector<ByteStrip> make_strips(const Bank& x, const Bank& y, Pixel pixel) {
+    const auto ratio = [](const Bank& bank) { return static_cast<double>(bank.inputs) / bank.output_count(); };
+    int most_rows = 0, most_columns = 0;
+    for (const Bank::Row& row : y.rows) most_rows = std::max(most_rows, row.count);
+    for (const Bank::Row& row : x.rows) most_columns = std::max(most_columns, row.count);
+    const double rows = tile_rows(pixel) * ratio(y) + most_rows + 3;
+    const double columns = std::max(second_cache / (rows * static_cast<int>(pixel)), 16.0 * most_columns);
+    // Pixels beyond one border are those of the other under wrap: they must be in the same strip.
+    const int outputs = x.edge == Edge::wrap || columns >= x.inputs
+                            ? x.output_count()
+                            : std::max(64, static_cast<int>(columns / ratio(x)) & ~15);
+    std::vector<ByteStrip> strips;
+    for (int first = 0; first < x.output_count(); first += std::min(outputs, x.output_count() - first)) {
+        const int last = first + std::min(outputs, x.output_count() - first);
+        strips.push_back({first, last, indices_read(x, first, last)});
+    }
+    return strips;
+}
 
 /// The same for means of 2 x 2 pixels, which need no rows in between.
 void halve_rows(View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst, int first_target, int c,
@@ -250,8 +279,13 @@ void halve_rows(View<const std::uint8_t> src, int first_source, View<std::uint8_
 }  // namespace
 
 BytePlan make_byte_plan(const ByteBanks& banks) {
-    return {banks, make_byte_pairs(banks.x), best_origin(*banks.y.bank),
-            halves_by_box(*banks.x.bank) && halves_by_box(*banks.y.bank)};
+    const Bank &x = *banks.x.bank, &y = *banks.y.bank;
+    return {banks,
+            make_byte_pairs(banks.x),
+            make_strips(x, y, Pixel::one),
+            make_strips(x, y, Pixel::four),
+            best_origin(y),
+            halves_by_box(x) && halves_by_box(y)};
 }
 
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
@@ -262,9 +296,12 @@ void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_
     for (int c = 0; c < src.channels; c += step) {
         const int count = std::min(step, src.channels - c);
         const Pixel pixel = count == 1 ? Pixel::one : Pixel::four;
-        if (plan.is_half_box && is_in_place(src, count, pixel) && is_in_place(dst, count, pixel))
+        if (plan.is_half_box && is_in_place(src, count, pixel) && is_in_place(dst, count, pixel)) {
             halve_rows(src, first_source, dst, first_target, c, pixel, begin, end);
-        else ByteRun(plan, src, first_source, dst, first_target, c, count, pixel).rows(begin, end);
+            continue;
+        }
+        for (const ByteStrip& strip : pixel == Pixel::one ? plan.strips_of_one : plan.strips_of_four)
+            ByteRun(plan, src, first_source, dst, first_target, c, count, pixel, strip).rows(begin, end);
     }
 }
 

@@ -1,17 +1,28 @@
 // Resampling of 8-bit codes in integers.
 #pragma once
+#include <vector>
+
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/core/view.h"
 #include "bandlimit/resample/byte_bank.h"
 #include "bandlimit/resample/byte_combine.h"
+#include "bandlimit/resample/lines.h"
 
 namespace bandlimit {
+
+/// Output columns [first, last) that are computed from top to bottom before the next ones, so that the source rows stay
+/// in the second cache, however wide the image is.
+struct ByteStrip {
+    int first = 0, last = 0;
+    IndexRange read;  ///< the source columns read; may reach outside the image
+};
 
 /// What resize_bytes() needs to know about a pair of banks.
 struct BytePlan {
     ByteBanks banks;
     BytePairs pairs;
-    int origin = 0;  ///< of the groups of four rows
+    std::vector<ByteStrip> strips_of_one, strips_of_four;  ///< for pixels of one and of four samples
+    int origin = 0;                                        ///< of the groups of four rows
     bool is_half_box = false;
 };
 BytePlan make_byte_plan(const ByteBanks& banks);
@@ -20,7 +31,8 @@ BytePlan make_byte_plan(const ByteBanks& banks);
 ///
 /// shapes   src holds the stored rows from first_source on that the outputs read, dst the output rows from first_target
 ///          on; any strides, any number of channels
-/// memory   the source rows that 8 output rows read and 16 bits per sample of 8 rows, 32 where a channel runs by itself
+/// memory   of one strip, the source rows that 8 output rows read, 32 where a channel runs by itself, and 16 bits per
+///          sample of so many rows: about 1 MiB
 /// cost     for four channels side by side, or one, about 1.5 times that of copying; 2 and 3 run as 4
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
                   int first_target, int begin, int end);

@@ -79,6 +79,26 @@ TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
     }
 }
 
+TEST(ResizeBytes, WideImagesAreThoseOfTheirDefinition) {
+    Random random(3);
+    for (const Edge edge : all_edges())
+        for (const int channels : {1, 3, 4}) {
+            const int width = random.integer(5000, 9000), height = 120, new_width = random.integer(2000, 4000);
+            const Bank x = make_bank(lanczos(3), {width}, {new_width}, edge);
+            const Bank y = make_bank(lanczos(3), {height}, {9}, edge);
+            const auto banks = make_byte_banks(x, y);
+            ASSERT_TRUE(banks);
+            const BytePlan plan = make_byte_plan(*banks);
+            EXPECT_EQ(plan.strips_of_four.size() > 2, edge != Edge::wrap);
+            const Image<std::uint8_t> src = noise(random, width, height, channels, Layout::interleaved);
+            Image<std::uint8_t> expected(new_width, 9, channels), found(new_width, 9, channels, Layout::interleaved);
+            resize_bytes_scalar(*banks, src.view(), expected.view());
+            if (!has_byte_vectors()) return;
+            resize_bytes(plan, src.view(), 0, found.view(), 0, 0, 9);
+            ASSERT_EQ(difference(found.view(), expected.view()), "") << name_of(edge) << ' ' << channels;
+        }
+}
+
 TEST(ResizeBytes, KeepsConstantsExactly) {
     for (const Kernel& kernel : kernels())
         for (const int size : {5, 37, 80}) {

@@ -57,16 +57,17 @@ public:
           inside_{std::max(strip.read.begin, 0), std::min(strip.read.end, plan.src.x.count)},
           columns_(columns_of(source.samples, inside_.begin, inside_.end - inside_.begin)),
           targets_(columns_of(target.samples, strip.first(), outputs_)),
-          out_(block_rows, length(outputs_)) {
-        if (plan.x_first) decoded_ = Rows(block_rows, length(width_));
-        else if (!plan.radial) middle_ = Rows(block_rows, length(width_));
+          block_(rows_of_block(plan.channels)),
+          out_(block_, length(outputs_)) {
+        if (plan.x_first) decoded_ = Rows(block_, length(width_));
+        else if (!plan.radial) middle_ = Rows(block_, length(width_));
     }
 
     /// Rows [begin, end) of the target; returns whether something not finite was lost.
     bool rows(int begin, int end) {
         bool lost = false;
-        for (int first = begin; first < end; first += block_rows) {
-            const int last = std::min(first + block_rows, end);
+        for (int first = begin; first < end; first += block_) {
+            const int last = std::min(first + block_, end);
             gather_lines(plan_.rows_read(first, last));
             look_ahead(last, end);
             if (plan_.radial) filter_radial(first, last);
@@ -145,7 +146,7 @@ private:
     void look_ahead(int last, int end) {
         ahead_.clear();
         if (!is_direct() || last >= end) return;
-        const int next = plan_.rows_read(last, std::min(last + block_rows, end)).end;
+        const int next = plan_.rows_read(last, std::min(last + block_, end)).end;
         for (int v = begin_ + static_cast<int>(lines_.size()); v < next; ++v) ahead_.push_back(direct_row(v));
     }
 
@@ -170,8 +171,8 @@ private:
             for (int i = 0; i < count; ++i) load(v + i, held_[slot + i]);
             return;
         }
-        for (int done = 0; done < count; done += block_rows) {
-            const int some = std::min(block_rows, count - done);
+        for (int done = 0; done < count; done += block_) {
+            const int some = std::min(block_, count - done);
             for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
             filter_x(decoded_.view(0, some, width_, plan_.channels),
                      held_.view(slot + done, some, outputs_, plan_.channels));
@@ -218,6 +219,7 @@ private:
     IndexRange inside_;     ///< the source columns of the strip that exist
     AnyConstView columns_;  ///< those
     AnyView targets_;
+    int block_;  ///< output rows computed together
     SlidingWindow window_;
     Rows held_, decoded_, middle_, out_;
     std::vector<const float*> lines_, ahead_;
@@ -229,7 +231,7 @@ private:
 
 std::vector<Strip> make_strips(const ResizePlan& plan) {
     const double step = static_cast<double>(plan.src.y.count) / plan.dst.y.count;
-    const double rows = block_rows * (1 + step) + plan.y.row_info(plan.y.output_count() / 2).count;
+    const double rows = rows_of_block(plan.channels) * (1 + step) + plan.y.row_info(plan.y.output_count() / 2).count;
     const double columns = plan.x_first ? plan.src.x.count : strip_bytes / (rows * plan.channels * sizeof(float));
     std::vector<Strip> strips;
     for (const TileRun& run : tile_runs(plan.x)) {

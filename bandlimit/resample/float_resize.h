@@ -4,14 +4,15 @@
 
 namespace bandlimit {
 
-constexpr int block_rows = 16;  ///< output rows computed together
+/// Output rows computed together: more where their samples side by side fill no tile.
+constexpr int rows_of_block(int channels) { return channels < 3 ? 32 : 16; }
 
 /// The strips that the columns of a plan with banks are computed in: one if the rows along x are filtered first.
 std::vector<Strip> make_strips(const ResizePlan& plan);
 
 /// Computes rows [begin, end) of the output in one thread; see Resizer::run.
 ///
-/// memory   the source rows that block_rows output rows read, and block_rows more, of one strip
+/// memory   the source rows that a block of output rows reads, and one more block, of one strip: about 1 MiB
 bool resize_floats(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end);
 
 }  // namespace bandlimit

@@ -176,6 +176,27 @@ TEST(Resizer, BlocksOfRowsGiveTheBitsOfTheWhole) {
             }
 }
 
+TEST(Resizer, PartsOfWideImagesGiveTheBitsOfTheWhole) {
+    constexpr int width = 7000, height = 70, new_width = 2999, new_height = 12;
+    for (const int channels : {1, 3, 4}) {
+        const Image<float> src = noise(width, height, channels, 5);
+        for (const Edge edge : all_edges()) {
+            const Axis x{new_width, 0, double(width)}, y{new_height, 0, double(height)};
+            const Grid from{{width, 0, double(width)}, {height, 0, double(height)}};
+            Image<float> whole(new_width, new_height, channels), part(1, new_height, channels);
+            const auto resize_to = [&](const Axis& columns, View<float> to) {
+                Resizer(from, {columns, y}, channels, {.edge = edge}).run({src.view(), 0, {}}, {to, 0, {}, {}});
+            };
+            resize_to(x, whole.view());
+            for (int i = 0; i < new_width; i += 61) {
+                resize_to(x.cells(i, i + 1), part.view());
+                expect_same<float>(part.view(), cropped(View<const float>(whole.view()), i, 0, 1, new_height),
+                                   message(name_of(edge), ' ', channels, ' ', i));
+            }
+        }
+    }
+}
+
 template <class T>
 Image<T> stored(const Image<float>& values, const Encoding& encoding) {
     Image<T> image(values.width(), values.height(), values.channels(), Layout::interleaved);
