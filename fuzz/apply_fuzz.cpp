@@ -10,21 +10,11 @@
 #include "bandlimit/math/random.h"
 #include "bandlimit/resample/apply.h"
 #include "bandlimit/resample/combine.h"
+#include "fuzz/bytes.h"
 
 namespace {
 
 using namespace bandlimit;
-
-/// Reads numbers from the front of the input.
-struct Bytes {
-    const std::uint8_t* data;
-    std::size_t size;
-    int below(int limit) {
-        if (size == 0) return 0;
-        --size;
-        return *data++ % limit;
-    }
-};
 
 /// Fused and separate multiply-adds differ by rounding; with fused ones both forms have the same bits.
 bool is_close(float a, float b, int taps) {

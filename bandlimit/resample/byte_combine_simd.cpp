@@ -33,7 +33,7 @@ namespace bandlimit {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 
 bool HasByteVectors() { return false; }
 void HalveBytes(const std::uint8_t* const*, std::size_t, Pixel, std::uint8_t*) {}

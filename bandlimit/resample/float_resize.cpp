@@ -229,18 +229,20 @@ private:
 
 }  // namespace
 
+double strip_columns(double rows, int channels, double taps) {
+    return std::max(strip_bytes / (rows * channels * sizeof(float)), 16 * taps);
+}
+
 std::vector<Strip> make_strips(const ResizePlan& plan) {
     const double step = static_cast<double>(plan.src.y.count) / plan.dst.y.count;
     const double rows = rows_of_block(plan.channels) * (1 + step) + plan.y.row_info(plan.y.output_count() / 2).count;
-    const double columns = plan.x_first ? plan.src.x.count : strip_bytes / (rows * plan.channels * sizeof(float));
     std::vector<Strip> strips;
     for (const TileRun& run : tile_runs(plan.x)) {
         if (!strips.empty()) {
             Strip& strip = strips.back();
             const IndexRange both{std::min(strip.read.begin, run.read.begin), std::max(strip.read.end, run.read.end)};
-            // Columns at the border of two strips are decoded twice.
-            const int least = 16 * plan.x.row_info(run.first).count;
-            if (plan.x_first || both.end - both.begin <= std::max<double>(columns, least)) {
+            const int taps = plan.x.row_info(run.first).count;
+            if (plan.x_first || both.end - both.begin <= strip_columns(rows, plan.channels, taps)) {
                 strip.runs.push_back(run);
                 strip.read = both;
                 continue;

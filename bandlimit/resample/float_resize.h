@@ -7,6 +7,10 @@ namespace bandlimit {
 /// Output rows computed together: more where their samples side by side fill no tile.
 constexpr int rows_of_block(int channels) { return channels < 3 ? 32 : 16; }
 
+/// How wide a strip is whose source rows are `rows`; borders of strips are decoded twice, so it is much wider than what
+/// an output reads.
+double strip_columns(double rows, int channels, double taps);
+
 /// The strips that the columns of a plan with banks are computed in: one if the rows along x are filtered first.
 std::vector<Strip> make_strips(const ResizePlan& plan);
 

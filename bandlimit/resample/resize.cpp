@@ -101,11 +101,14 @@ std::uint64_t Resizer::bytes(const Grid& src, const Grid& dst, int channels, con
     const bool radial = kernel && is_radial(*kernel);
     const std::uint64_t banks = radial ? 0 : bank_bytes(radius_x, src.x, dst.x) + bank_bytes(radius_y, src.y, dst.y);
     const bool x_first = !radial && cost(x.step(), y.step()) < cost(y.step(), x.step());
-    // The window of a run and its blocks of rows.
+    // The window of a run and its blocks of rows, of one strip.
     const double outputs = std::min(rows_of_block(channels), dst.y.count);
     const double read = std::min<double>(2 * radius_y * y.stretch() + outputs * std::abs(y.step()) + 1, src.y.count);
-    const double window = 1.25 * read * (x_first ? dst.x.count : src.x.count);
-    const double blocks = rows_of_block(channels) * (static_cast<double>(src.x.count) + dst.x.count);
+    const double strip = radial || x_first ? src.x.count : strip_columns(read, channels, 2 * radius_x * x.stretch());
+    const double columns = std::min<double>(strip, src.x.count);
+    const double written = std::min<double>(columns / std::abs(x.step()) + 1, dst.x.count);
+    const double window = 1.25 * read * (x_first ? written : columns);
+    const double blocks = rows_of_block(channels) * (columns + written);
     const double runs = std::clamp(std::ceil(double(dst.y.count) / smallest_run), 1.0, double(parallel.count()));
     return banks + static_cast<std::uint64_t>(runs * (window + blocks) * channels * sizeof(float));
 }
