@@ -79,6 +79,15 @@ CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge) {
         ->type_name("clamp|reflect|wrap|zero|renormalize");
 }
 
+CLI::Option* add_tiles(CLI::App* verb, int& tile) {
+    return verb
+        ->add_option("--tiles", tile,
+                     "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
+                     "default: rows")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+}
+
 CLI::Option* add_threads(CLI::App* verb, Parallel& parallel) {
     return verb->add_option("--threads", parallel.threads, "Threads to keep busy; 0 (default): one per core")
         ->check(CLI::Range(0, 1024))
@@ -130,10 +139,11 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     return numbers;
 }
 
-void check_output_format(const std::string& path, std::optional<Depth> depth) {
+void check_output_format(const std::string& path, std::optional<Depth> depth, int tile) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);
     const FormatAbilities format = abilities_of(path);
+    check_tile(format, tile);
     if (!depth || nearest_depth(format, *depth) == *depth) return;
     std::string depths;
     for (const Depth d : format.depths) depths += (depths.empty() ? "" : ", ") + std::string(name_of(d));
