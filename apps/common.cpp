@@ -89,7 +89,11 @@ CLI::Option* add_tiles(CLI::App* verb, int& tile) {
 }
 
 CLI::Option* add_threads(CLI::App* verb, Parallel& parallel) {
-    return verb->add_option("--threads", parallel.threads, "Threads to keep busy; 0 (default): one per core")
+    return verb
+        ->add_option(
+            "--threads", parallel.threads,
+            "Most threads to keep busy; 0 (default): one per core; 1: reading, filtering and writing take turns\n"
+            "instead of overlapping")
         ->check(CLI::Range(0, 1024))
         ->type_name("N");
 }
@@ -99,6 +103,13 @@ CLI::Option* add_json(CLI::App* verb, bool& json) {
 }
 
 CLI::Option* add_quiet(CLI::App* verb) { return verb->add_flag("--quiet", quiet, "No notes, no progress bar"); }
+
+Shares shares_of(Parallel parallel) {
+    // A codec that works in parallel keeps its stage's thread busy too; below three OpenImageIO does not try.
+    const int threads = parallel.count(), quarter = threads / 4;
+    const int codecs = quarter >= 3 ? quarter : 1;
+    return {{codecs}, {threads - codecs + 1}};
+}
 
 Size parse_size(const std::string& option, const std::string& text) {
     const auto refuse = [&]() -> Size {

@@ -53,6 +53,13 @@ CLI::Option* add_threads(CLI::App* verb, Parallel& parallel);
 CLI::Option* add_json(CLI::App* verb, bool& json);
 CLI::Option* add_quiet(CLI::App* verb);
 
+/// How many threads codecs may use for what they do in parallel, and how many are left for the stages of a pipeline
+/// that reads and writes through them: together no more than the caller allows.
+struct Shares {
+    Parallel codecs, stages;
+};
+Shares shares_of(Parallel parallel);
+
 struct Size {
     int width = 0, height = 0;
 };

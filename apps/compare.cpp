@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int block_rows = 64;
+constexpr int block_rows = 32;
 
 enum class Measure { encoded, linear };
 

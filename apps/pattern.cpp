@@ -6,7 +6,7 @@
 
 #include "apps/common.h"
 #include "apps/pictures.h"
-#include "apps/pipeline.h"
+#include "bandlimit/core/pipeline.h"
 #include "bandlimit/signal/render.h"
 #include "bandlimit/signal/signal.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "apps/common.h"
-#include "apps/pipeline.h"
 #include "apps/resize_stream.h"
 #include "bandlimit/io/taps_json.h"
 #include "bandlimit/resample/resize.h"

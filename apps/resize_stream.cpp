@@ -4,7 +4,7 @@
 #include <array>
 
 #include "apps/common.h"
-#include "apps/pipeline.h"
+#include "bandlimit/core/pipeline.h"
 
 namespace bandlimit::app {
 namespace {
@@ -17,23 +17,28 @@ std::uint64_t row_bytes(int width, std::size_t channels, Depth depth) {
     return static_cast<std::uint64_t>(width) * channels * size_of(depth);
 }
 
-/// The rows of a file that one band after another needs; what neighbours share is read once.
+/// The rows of a file that one band after another needs; what neighbours share is read once. Where a band needs all
+/// rows, as under Edge::wrap, all bands share one copy of them.
 class SourceBands {
 public:
-    SourceBands(ImageReader& reader, int capacity) : reader_(reader) {
+    SourceBands(ImageReader& reader, int capacity) : reader_(reader), is_whole_(capacity == reader.info().height) {
         const ImageInfo& in = reader.info();
+        bands_.resize(is_whole_ ? 1 : 2);
         for (Band& band : bands_) band.image = make_image(in.depth, in.width, capacity, in.channels());
     }
 
-    /// Makes rows [range) the content of band i, after i - 1 and while that may be in use.
+    /// Makes band i hold rows [range), after i - 1 and while that may be in use.
     void load(int i, IndexRange range) {
         Band& band = of(i);
+        if (is_whole_) {
+            if (i == 0) read(band, {0, reader_.info().height}, 0);
+            return;
+        }
         const Band& last = of(i + 1);
-        const int wanted = range.end - range.begin;
-        const int kept = range.begin >= last.rows.begin ? std::clamp(last.rows.end - range.begin, 0, wanted) : 0;
+        const int kept =
+            range.begin >= last.rows.begin ? std::clamp(last.rows.end - range.begin, 0, range.end - range.begin) : 0;
         if (kept > 0) copy_rows(last.image, range.begin - last.rows.begin, kept, band.image);
-        if (wanted > kept) reader_.read_rows(range.begin + kept, rows_of(view_of(band.image), kept, wanted - kept));
-        band.rows = range;
+        read(band, range, kept);
     }
 
     SourceRows rows(int i, const Encoding& encoding) {
@@ -47,7 +52,14 @@ private:
         AnyImage image;
         IndexRange rows{0, 0};
     };
-    Band& of(int i) { return bands_[static_cast<std::size_t>(i % 2)]; }
+    Band& of(int i) { return bands_[static_cast<std::size_t>(i) % bands_.size()]; }
+
+    /// Makes rows [range) the content of `band`, which holds the first `kept` of them.
+    void read(Band& band, IndexRange range, int kept) {
+        const int missing = range.end - range.begin - kept;
+        if (missing > 0) reader_.read_rows(range.begin + kept, rows_of(view_of(band.image), kept, missing));
+        band.rows = range;
+    }
 
     static void copy_rows(const AnyImage& from, int first, int count, AnyImage& to) {
         std::visit(
@@ -60,7 +72,8 @@ private:
     }
 
     ImageReader& reader_;
-    std::array<Band, 2> bands_;
+    bool is_whole_;
+    std::vector<Band> bands_;
 };
 
 /// Output rows per band: so few that stages overlap, and neither side exceeds the bytes of a band by much.
@@ -103,9 +116,10 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
     const int rows = rows_per_band(resizer, source_row, target_row, target.height);
     const int bands = (target.height - 1) / rows + 1;
     const int source_rows = largest_band(resizer, rows, bands, target.height);
-    require_memory(
-        2 * (static_cast<std::uint64_t>(source_rows) * source_row + static_cast<std::uint64_t>(rows) * target_row),
-        "resizing " + std::to_string(in.width) + " x " + std::to_string(in.height) + " pixels");
+    const std::uint64_t copies = source_rows == in.height ? 1 : 2;
+    require_memory(copies * static_cast<std::uint64_t>(source_rows) * source_row +
+                       2 * static_cast<std::uint64_t>(rows) * target_row,
+                   "resizing " + std::to_string(in.width) + " x " + std::to_string(in.height) + " pixels");
     SourceBands source(reader, source_rows);
     std::array<AnyImage, 2> out;
     for (AnyImage& image : out)

@@ -5,7 +5,7 @@
 
 #include "bandlimit/core/parallel.h"
 
-namespace bandlimit::app {
+namespace bandlimit {
 
 /// What is done to one item after another, as reading, filtering or writing a band of rows.
 struct Stage {
@@ -21,14 +21,8 @@ struct Stage {
 ///
 /// threads  at most parallel.count() are busy at a time. The first stage runs in the caller's thread; with one thread
 ///          all do, and nothing overlaps
-/// throws   what a stage threw first, after all of them stopped
+/// cost     some microseconds per item, and a thread per stage but the first
+/// throws   what a stage threw first, after all of them stopped; Error for no stages or count < 0
 void run_pipeline(int count, const std::vector<Stage>& stages, Parallel parallel);
 
-/// How many threads codecs may use for what they do in parallel, and how many are left for the stages of a pipeline
-/// that reads and writes through them: together no more than the caller allows.
-struct Shares {
-    Parallel codecs, stages;
-};
-Shares shares_of(Parallel parallel);
-
-}  // namespace bandlimit::app
+}  // namespace bandlimit

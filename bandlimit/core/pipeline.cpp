@@ -1,4 +1,4 @@
-#include "apps/pipeline.h"
+#include "bandlimit/core/pipeline.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -6,7 +6,9 @@
 #include <mutex>
 #include <thread>
 
-namespace bandlimit::app {
+#include "bandlimit/core/error.h"
+
+namespace bandlimit {
 namespace {
 
 /// Who may begin what, and with how many threads.
@@ -68,8 +70,10 @@ void run_stage(Schedule& schedule, std::size_t s, const Stage& stage, int count)
 }  // namespace
 
 void run_pipeline(int count, const std::vector<Stage>& stages, Parallel parallel) {
+    if (count < 0 || stages.empty())
+        fail("run_pipeline: ", count, " items through ", stages.size(), " stages; pass at least 0 and 1");
     const int threads = parallel.count();
-    if (threads == 1 || count == 1) {
+    if (threads == 1 || count == 1 || stages.size() == 1) {
         for (int item = 0; item < count; ++item)
             for (const Stage& stage : stages) stage.run(item, {stage.scales ? threads : 1});
         return;
@@ -88,11 +92,4 @@ void run_pipeline(int count, const std::vector<Stage>& stages, Parallel parallel
     schedule.rethrow();
 }
 
-Shares shares_of(Parallel parallel) {
-    // A codec that works in parallel keeps its stage's thread busy too; below three OpenImageIO does not try.
-    const int threads = parallel.count(), quarter = threads / 4;
-    const int codecs = quarter >= 3 ? quarter : 1;
-    return {{codecs}, {threads - codecs + 1}};
-}
-
-}  // namespace bandlimit::app
+}  // namespace bandlimit
