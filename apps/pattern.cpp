@@ -96,7 +96,7 @@ struct Seconds {
     double render = 0, write = 0;
 };
 
-constexpr int band_samples = 1 << 23;  // of the image held at a time: 32 MB of floats
+constexpr int band_samples = 1 << 22;  // of the image held at a time: 16 MB of floats
 
 /// Draws and writes the image by bands of rows: one is written while the next is drawn.
 Seconds draw(const Options& o, const Signal& signal, const Sampling& sampling, const ImageTarget& target) {

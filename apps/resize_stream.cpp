@@ -9,7 +9,9 @@
 namespace bandlimit::app {
 namespace {
 
-constexpr std::uint64_t band_bytes = 32u << 20;  // of the larger of source and target rows
+// Of the larger of source and target rows. Where a row of output takes many of the source, bands may be larger, since
+// each of them filters anew what its first row shares with the last band.
+constexpr std::uint64_t band_bytes = 32u << 20, largest_band_bytes = 192u << 20;
 constexpr int least_rows = 64;
 constexpr int wanted_bands = 8;  // for stages to overlap
 
@@ -79,13 +81,13 @@ private:
 /// Output rows per band: so few that stages overlap, and neither side exceeds the bytes of a band by much.
 int rows_per_band(const Resizer& resizer, std::uint64_t source_row, std::uint64_t target_row, int target_height) {
     int rows = std::min(target_height, std::max(least_rows, target_height / wanted_bands + 1));
-    while (rows > least_rows) {
+    const auto exceeds = [&](std::uint64_t limit) {
         const IndexRange needed = resizer.rows_needed(0, rows);
-        const std::uint64_t bytes = std::max(static_cast<std::uint64_t>(needed.end - needed.begin) * source_row,
-                                             static_cast<std::uint64_t>(rows) * target_row);
-        if (bytes <= band_bytes) break;
-        rows = std::max(least_rows, rows / 2);
-    }
+        return std::max(static_cast<std::uint64_t>(needed.end - needed.begin) * source_row,
+                        static_cast<std::uint64_t>(rows) * target_row) > limit;
+    };
+    while (rows > least_rows && exceeds(band_bytes)) rows = std::max(least_rows, rows / 2);
+    while (rows > 1 && exceeds(largest_band_bytes)) rows /= 2;
     return rows;
 }
 

@@ -17,8 +17,9 @@ struct StreamReport {
 /// Resizes all rows of `reader`, whose codes mean `from`, into `writer`, where they shall mean `to`. While one band is
 /// filtered, the next is read and the last one written, unless `parallel` is one thread.
 ///
-/// memory   two bands of source and two of target rows, each 32 MiB or, if that is more, what 64 output rows take;
-///          beside them what `resizer`, `reader` and `writer` say. Under Edge::wrap the whole source, once
+/// memory   two bands of source and two of target rows, each 32 MiB or, if that is more, what 64 output rows take,
+///          but at most 192 MiB or what one output row takes; beside them what `resizer`, `reader` and `writer` say.
+///          Under Edge::wrap the whole source, once
 /// throws   what `reader`, `resizer` or `writer` throw, after all stages stopped
 void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& from, ImageWriter& writer,
                    const Encoding& to, const ImageTarget& target, const std::vector<float>& background,
