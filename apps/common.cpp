@@ -79,8 +79,21 @@ CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge) {
         ->type_name("clamp|reflect|wrap|zero|renormalize");
 }
 
+CLI::Option* add_tiles(CLI::App* verb, int& tile) {
+    return verb
+        ->add_option("--tiles", tile,
+                     "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
+                     "default: rows")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+}
+
 CLI::Option* add_threads(CLI::App* verb, Parallel& parallel) {
-    return verb->add_option("--threads", parallel.threads, "Threads to keep busy; 0 (default): one per core")
+    return verb
+        ->add_option(
+            "--threads", parallel.threads,
+            "Most threads to keep busy; 0 (default): one per core; 1: reading, filtering and writing take turns\n"
+            "instead of overlapping")
         ->check(CLI::Range(0, 1024))
         ->type_name("N");
 }
@@ -90,6 +103,13 @@ CLI::Option* add_json(CLI::App* verb, bool& json) {
 }
 
 CLI::Option* add_quiet(CLI::App* verb) { return verb->add_flag("--quiet", quiet, "No notes, no progress bar"); }
+
+Shares shares_of(Parallel parallel) {
+    // A codec that works in parallel keeps its stage's thread busy too; below three OpenImageIO does not try.
+    const int threads = parallel.count(), quarter = threads / 4;
+    const int codecs = quarter >= 3 ? quarter : 1;
+    return {{codecs}, {threads - codecs + 1}};
+}
 
 Size parse_size(const std::string& option, const std::string& text) {
     const auto refuse = [&]() -> Size {
@@ -130,10 +150,11 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     return numbers;
 }
 
-void check_output_format(const std::string& path, std::optional<Depth> depth) {
+void check_output_format(const std::string& path, std::optional<Depth> depth, int tile) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);
     const FormatAbilities format = abilities_of(path);
+    check_tile(format, tile);
     if (!depth || nearest_depth(format, *depth) == *depth) return;
     std::string depths;
     for (const Depth d : format.depths) depths += (depths.empty() ? "" : ", ") + std::string(name_of(d));

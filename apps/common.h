@@ -47,9 +47,18 @@ void add_tour(Program& program);
 CLI::Option* add_space(CLI::App* verb, Space& space);
 CLI::Option* add_depth(CLI::App* verb, std::optional<Depth>& depth);
 CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge);
+/// `tile` stays 0 for an output stored in rows.
+CLI::Option* add_tiles(CLI::App* verb, int& tile);
 CLI::Option* add_threads(CLI::App* verb, Parallel& parallel);
 CLI::Option* add_json(CLI::App* verb, bool& json);
 CLI::Option* add_quiet(CLI::App* verb);
+
+/// How many threads codecs may use for what they do in parallel, and how many are left for the stages of a pipeline
+/// that reads and writes through them: together no more than the caller allows.
+struct Shares {
+    Parallel codecs, stages;
+};
+Shares shares_of(Parallel parallel);
 
 struct Size {
     int width = 0, height = 0;
@@ -62,9 +71,9 @@ double parse_number(const std::string& option, const std::string& text);
 /// Numbers between commas.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text);
 
-/// Checks what the command line alone shows of an output: that its format is known and holds the depth (UsageError). A
-/// path that exists and is no regular file is refused before that, as a matter of the file system.
-void check_output_format(const std::string& path, std::optional<Depth> depth);
+/// Checks what the command line alone shows of an output: that its format is known and holds the depth and the tiles
+/// (UsageError). A path that exists and is no regular file is refused before that, as a matter of the file system.
+void check_output_format(const std::string& path, std::optional<Depth> depth, int tile = 0);
 
 /// Writes `report` to stdout, and nothing else.
 void print_json(const nlohmann::ordered_json& report);
@@ -90,6 +99,9 @@ private:
 /// Seconds that pieces of work took, added up.
 class Stopwatch {
 public:
+    /// Since this watch was made.
+    double total() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
     template <class Work>
     decltype(auto) time(double& seconds, Work work) {
         struct Add {
@@ -99,6 +111,9 @@ public:
         } add{seconds};
         return work();
     }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Routes what codecs print by themselves to nowhere, and keeps the real stderr for us.

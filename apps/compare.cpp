@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int block_rows = 64;
+constexpr int block_rows = 16;
 
 enum class Measure { encoded, linear };
 
@@ -164,19 +164,18 @@ struct Result {
     Shift shift;
 };
 
-Result measure(const Options& o, Source& a, Source& b, Measure as) {
-    const ImageInfo& info = a.info();
-    const int width = info.width, height = info.height, channels = info.channels();
+/// Takes all rows of both files through the meters and the windows.
+Metrics pass_rows(const Options& o, Source& a, Source& b, Measure as, WindowCollector& window_a,
+                  WindowCollector& window_b) {
+    const int width = a.info().width, height = a.info().height, channels = a.info().channels();
     ErrorMeter errors(width, height, channels, o.border, o.parallel);
     SsimMeter similarity(width, height, channels, o.border, o.parallel);
-    const ShiftWindow window = window_within(width, height, o.border);
-    WindowCollector window_a(window, channels), window_b(window, channels);
     std::optional<DiffWriter> diff;
-    if (!o.diff.empty()) diff.emplace(o.diff, info, o.parallel.threads);
+    if (!o.diff.empty()) diff.emplace(o.diff, a.info(), o.parallel.threads);
 
     Progress progress("comparing", height);
-    for (int y = 0; y < height; y += block_rows) {
-        const int rows = std::min(block_rows, height - y);
+    for (int y = 0, rows = 0; y < height; y += rows) {
+        rows = std::min(block_rows, height - y);
         const View<const float> va = a.read(y, rows, as, o.space, o.parallel);
         const View<const float> vb = b.read(y, rows, as, o.space, o.parallel);
         errors.add_rows(va, vb);
@@ -190,7 +189,15 @@ Result measure(const Options& o, Source& a, Source& b, Measure as) {
     std::vector<Measures> per_channel;
     errors.fill(per_channel);
     similarity.fill(per_channel);
-    return {summarize(std::move(per_channel)), shift_of(o, a, b, as, window_a.view(), window_b.view())};
+    return summarize(std::move(per_channel));
+}
+
+Result measure(const Options& o, Source& a, Source& b, Measure as) {
+    const ImageInfo& info = a.info();
+    const ShiftWindow window = window_within(info.width, info.height, o.border);
+    WindowCollector window_a(window, info.channels()), window_b(window, info.channels());
+    Metrics metrics = pass_rows(o, a, b, as, window_a, window_b);
+    return {std::move(metrics), shift_of(o, a, b, as, window_a.view(), window_b.view())};
 }
 
 void check_same_shape(const Options& o, const ImageInfo& a, const ImageInfo& b) {

@@ -2,8 +2,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 
 #include "apps/common.h"
+#include "apps/pictures.h"
+#include "bandlimit/core/pipeline.h"
 #include "bandlimit/signal/render.h"
 #include "bandlimit/signal/signal.h"
 
@@ -15,7 +18,7 @@ using MakeSignal = std::function<Signal(Size)>;
 /// What all kinds have in common.
 struct Options {
     std::string kind, out, size, antialias = "none";
-    int samples = 8;
+    int samples = 8, channels = 0, tile = 0;  ///< 0: as the format likes
     double low = 0, high = 1;
     std::optional<Depth> depth;
     Space space = Space::automatic;
@@ -33,6 +36,18 @@ Sampling sampling_of(const Options& o) {
 
 Grid grid_of(Size size) { return {{size.width, 0, double(size.width)}, {size.height, 0, double(size.height)}}; }
 
+int channels_of_file(const Options& o, const FormatAbilities& format) {
+    const auto holds = [&](int n) {
+        return format.channels.empty() ||
+               std::find(format.channels.begin(), format.channels.end(), n) != format.channels.end();
+    };
+    if (o.channels == 0) return holds(1) ? 1 : 3;
+    if (!holds(o.channels))
+        throw UsageError(fmt::format("--channels: {} files do not hold {}; choose {}, or TIFF", format.name, o.channels,
+                                     holds(1) ? "1" : "3"));
+    return o.channels;
+}
+
 /// What the command line alone shows to be wrong.
 void check(const Options& o) {
     const Size size = parse_size("--size", o.size);
@@ -40,35 +55,38 @@ void check(const Options& o) {
     rendering_bytes(grid_of(size), sampling);
     // A small signal of the same kind knows whether it has an exact form; noise needs its memory first, see run().
     if (o.bytes(size) == 0) check_sampling(with_range(o.make_signal(size), o.low, o.high), sampling);
-    check_output_format(o.out, o.depth);
+    check_output_format(o.out, o.depth, o.tile);
+    channels_of_file(o, abilities_of(o.out));
 }
 
 /// The file to be written.
 ImageTarget target_of(const Options& o, Size size) {
     const FormatAbilities format = abilities_of(o.out);
     const Depth depth = o.depth.value_or(nearest_depth(format, format.is_linear ? Depth::f32 : Depth::u8));
-    const bool holds_grey = format.channels.empty() ||
-                            std::find(format.channels.begin(), format.channels.end(), 1) != format.channels.end();
     const bool is_linear = o.space == Space::data || o.space == Space::linear || format.is_linear || !is_integer(depth);
     ImageTarget target;
     target.width = size.width;
     target.height = size.height;
-    target.channel_names = holds_grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+    const int channels = channels_of_file(o, format);
+    target.channel_names = channel_names(channels);
+    target.alpha = alpha_among(channels);
     target.depth = depth;
     target.transfer = is_linear ? Transfer::linear : Transfer::srgb;
     target.is_data = o.space == Space::data;
+    target.tile = o.tile;
     return target;
 }
 
-/// Encodes the rows of `linear`, one channel, to all channels of `stored`.
-void encode_rows(View<const float> linear, int channels, const AnyView& stored, const Encoding& encoding,
+/// Encodes the rows of `linear`, one channel, to all channels of `stored` but alpha, which is opaque.
+void encode_rows(View<const float> linear, const ImageTarget& target, const AnyView& stored, const Encoding& encoding,
                  Parallel parallel) {
+    const int channels = static_cast<int>(target.channel_names.size());
     parallel_for(linear.height, 16, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         std::vector<float> row;
         for (int y = static_cast<int>(begin); y < end; ++y) {
             row.clear();
             for (int x = 0; x < linear.width; ++x)
-                row.insert(row.end(), static_cast<std::size_t>(channels), linear(x, y));
+                for (int c = 0; c < channels; ++c) row.push_back(c == target.alpha ? 1.0f : linear(x, y));
             encode_row(row, false, stored, y, encoding);
         }
     });
@@ -78,34 +96,42 @@ struct Seconds {
     double render = 0, write = 0;
 };
 
-constexpr int band_samples = 1 << 23;  // of the image held at a time: 32 MB of floats
+constexpr int band_samples = 1 << 22;  // of the image held at a time: 16 MB of floats
 
-/// Draws and writes the image by bands of rows.
+/// Draws and writes the image by bands of rows: one is written while the next is drawn.
 Seconds draw(const Options& o, const Signal& signal, const Sampling& sampling, const ImageTarget& target) {
     const Grid grid = grid_of({target.width, target.height});
     const int rows = std::clamp(band_samples / target.width, 1, target.height);
     const int channels = static_cast<int>(target.channel_names.size());
     const std::uint64_t band = static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(target.width);
     require_memory(rendering_bytes(grid, sampling) +
-                       band * (sizeof(float) + static_cast<std::uint64_t>(channels) * size_of(target.depth)),
+                       band * (sizeof(float) + 2 * static_cast<std::uint64_t>(channels) * size_of(target.depth)),
                    fmt::format("drawing {} x {} pixels", target.width, target.height));
-    ImageWriter writer(o.out, target, o.parallel.threads);
+    const Shares shares = shares_of(o.parallel);
+    ImageWriter writer(o.out, target, shares.codecs.threads);
     Image<float> linear(target.width, rows);
-    AnyImage stored = make_image(target.depth, target.width, rows, channels);
+    std::array<AnyImage, 2> stored;
+    for (AnyImage& image : stored) image = make_image(target.depth, target.width, rows, channels);
+    const auto rows_of_band = [&](int i) { return std::min(rows, target.height - i * rows); };
+    const auto encoded = [&](int i) {
+        return rows_of(view_of(stored[static_cast<std::size_t>(i % 2)]), 0, rows_of_band(i));
+    };
     Progress progress("pattern", target.height);
     Stopwatch watch;
     Seconds seconds;
-    for (int y = 0; y < target.height; y += rows) {
-        const int count = std::min(rows, target.height - y);
-        const View<float> drawn = cropped(linear.view(), 0, 0, target.width, count);
-        const AnyView encoded = rows_of(view_of(stored), 0, count);
+    const auto render_band = [&](int i, Parallel parallel) {
         watch.time(seconds.render, [&] {
-            render(signal, {grid.x, grid.y.cells(y, y + count)}, sampling, drawn, o.parallel);
-            encode_rows(drawn, channels, encoded, writer.encoding(), o.parallel);
+            const View<float> drawn = cropped(linear.view(), 0, 0, target.width, rows_of_band(i));
+            const int y = i * rows;
+            render(signal, {grid.x, grid.y.cells(y, y + drawn.height)}, sampling, drawn, parallel);
+            encode_rows(drawn, target, encoded(i), writer.encoding(), parallel);
         });
-        watch.time(seconds.write, [&] { writer.write_rows(const_view(encoded)); });
-        progress.advance_to(y + count);
-    }
+    };
+    const auto write_band = [&](int i, Parallel) {
+        watch.time(seconds.write, [&] { writer.write_rows(const_view(encoded(i))); });
+        progress.advance_to(i * rows + rows_of_band(i));
+    };
+    run_pipeline((target.height - 1) / rows + 1, {{render_band, true}, {write_band}}, shares.stages);
     watch.time(seconds.write, [&] { writer.finish(); });
     return seconds;
 }
@@ -203,6 +229,13 @@ void add_common(CLI::App* kind, const std::shared_ptr<Options>& o) {
         ->description(
             "What codes shall mean: auto (sRGB for 8 and 16 bit, else linear), srgb, or linear and data\n"
             "(codes are the values)");
+    kind->add_option(
+            "--channels", o->channels,
+            "1 grey, 2 grey and alpha, 3 RGB, 4 RGBA, all colours alike, alpha opaque; default: 1, or 3 where\n"
+            "the format has no grey")
+        ->check(CLI::Range(1, 4))
+        ->type_name("N");
+    add_tiles(kind, o->tile);
     add_threads(kind, o->parallel);
     add_json(kind, o->json);
     add_quiet(kind);

@@ -3,15 +3,6 @@
 namespace bandlimit::app {
 namespace {
 
-std::vector<std::string> names_of(int channels) {
-    switch (channels) {
-        case 1: return {"Y"};
-        case 2: return {"Y", "A"};
-        case 3: return {"R", "G", "B"};
-        default: return {"R", "G", "B", "A"};
-    }
-}
-
 /// Row y of any view, channels interleaved.
 void gather(View<const float> from, int y, std::vector<float>& row) {
     row.clear();
@@ -21,12 +12,23 @@ void gather(View<const float> from, int y, std::vector<float>& row) {
 
 }  // namespace
 
+std::vector<std::string> channel_names(int channels) {
+    switch (channels) {
+        case 1: return {"Y"};
+        case 2: return {"Y", "A"};
+        case 3: return {"R", "G", "B"};
+        default: return {"R", "G", "B", "A"};
+    }
+}
+
 void write_picture(const std::string& path, View<const float> linear, Depth depth) {
     const bool is_linear = abilities_of(path).is_linear || !is_integer(depth);
-    const int alpha = linear.channels == 2 || linear.channels == 4 ? linear.channels - 1 : -1;
-    const ImageTarget target{linear.width, linear.height, names_of(linear.channels),
-                             depth,        alpha,         is_linear ? Transfer::linear : Transfer::srgb,
-                             false,        nullptr};
+    ImageTarget target;
+    target.width = linear.width, target.height = linear.height;
+    target.channel_names = channel_names(linear.channels);
+    target.depth = depth;
+    target.alpha = alpha_among(linear.channels);
+    target.transfer = is_linear ? Transfer::linear : Transfer::srgb;
     ImageWriter writer(path, target);
     AnyImage stored = make_image(depth, linear.width, 1, linear.channels);
     std::vector<float> row;

@@ -14,7 +14,7 @@ namespace {
 struct Options {
     std::string in, out;
     std::string size, scale, region, kernel = "auto", background;
-    int width = 0, height = 0;
+    int width = 0, height = 0, tile = 0;
     bool centers = false;
     double antiring = 0;
     std::optional<Edge> edge;
@@ -63,7 +63,7 @@ void check(const Options& o) {
     if (!o.region.empty()) parse_region(o.region);
     if (!o.background.empty()) parse_background(o.background);
     if (o.kernel != "auto" && !o.is_taps_file()) parse_kernel(o.kernel);
-    check_output_format(o.out, o.depth);
+    check_output_format(o.out, o.depth, o.tile);
 }
 
 int rounded_length(double length) {
@@ -149,7 +149,7 @@ Output output_of(const Options& o, const ImageReader& reader, Size size) {
     const FormatAbilities format = abilities_of(o.out);
     const Depth depth = o.depth.value_or(nearest_depth(format, in.depth));
     Output out{{size.width, size.height, in.channel_names, depth, in.alpha, output_transfer(o.space, in, format, depth),
-                o.space == Space::data, &reader.metadata()},
+                o.space == Space::data, &reader.metadata(), o.tile},
                {}};
     if (in.alpha >= 0 && !o.background.empty()) {
         out.background =
@@ -177,7 +177,7 @@ Resizer make_resizer(const Options& o, const Grid& src, const Grid& dst, int cha
 }
 
 nlohmann::ordered_json report_of(const Options& o, const ImageInfo& in, const ImageTarget& out, const Resizer& resizer,
-                                 const ResizeOptions& options, const StreamReport& stream) {
+                                 const ResizeOptions& options, const StreamReport& stream, double total) {
     return {{"input",
              {{"file", o.in},
               {"width", in.width},
@@ -197,14 +197,15 @@ nlohmann::ordered_json report_of(const Options& o, const ImageInfo& in, const Im
             {"space", name_of(o.space)},
             {"alpha", options.premultiply ? "premultiply" : "straight"},
             {"threads", o.parallel.count()},
-            {"seconds", {{"read", stream.read}, {"filter", stream.filter}, {"write", stream.write}}}};
+            {"seconds", {{"read", stream.read}, {"filter", stream.filter}, {"write", stream.write}, {"total", total}}}};
 }
 
 void run(const Options& o) {
     check_output_path(o.out);
     Stopwatch watch;
     StreamReport stream;
-    ImageReader reader = watch.time(stream.read, [&] { return ImageReader(o.in, o.parallel.threads); });
+    const Shares shares = shares_of(o.parallel);
+    ImageReader reader = watch.time(stream.read, [&] { return ImageReader(o.in, shares.codecs.threads); });
     const ImageInfo& in = reader.info();
     const Rectangle region = source_region(o, in);
     const Size size = target_size(o, region);
@@ -217,17 +218,17 @@ void run(const Options& o) {
     if (in.has_foreign_profile && o.space == Space::automatic)
         note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", o.in));
 
-    ImageWriter writer(o.out, out.target, o.parallel.threads);
+    ImageWriter writer(o.out, out.target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
     if (o.space == Space::data) {  // alpha is a channel like the others, unless it was asked for
         from.alpha = options.premultiply ? in.alpha : -1;
         from.associated = in.associated;
         to.alpha = options.premultiply ? out.target.alpha : -1;
     }
-    stream_resize(resizer, reader, from, writer, to, out.target, out.background, o.parallel, stream);
+    stream_resize(resizer, reader, from, writer, to, out.target, out.background, shares.stages, stream);
     watch.time(stream.write, [&] { writer.finish(); });
     if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
-    if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream));
+    if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream, watch.total()));
 }
 
 }  // namespace
@@ -281,6 +282,7 @@ void add_resize(Program& program) {
     verb->add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")
         ->type_name("RRGGBB");
     add_depth(verb, o->depth);
+    add_tiles(verb, o->tile);
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
     add_quiet(verb);

@@ -1,71 +1,107 @@
 #include "apps/resize_stream.h"
 
 #include <algorithm>
+#include <array>
 
 #include "apps/common.h"
+#include "bandlimit/core/pipeline.h"
 
 namespace bandlimit::app {
 namespace {
 
-constexpr std::uint64_t band_bytes = 32u << 20;  // of the larger of source and target rows
+// Of the larger of source and target rows. Where a row of output takes many of the source, bands may be larger, since
+// each of them filters anew what its first row shares with the last band.
+constexpr std::uint64_t band_bytes = 32u << 20, largest_band_bytes = 192u << 20;
 constexpr int least_rows = 64;
+constexpr int wanted_bands = 8;  // for stages to overlap
 
 std::uint64_t row_bytes(int width, std::size_t channels, Depth depth) {
     return static_cast<std::uint64_t>(width) * channels * size_of(depth);
 }
 
-/// The rows of a file that are needed now, of which those known already are kept when the band moves on.
-class SourceBand {
+/// The rows of a file that one band after another needs; what neighbours share is read once. Where a band needs all
+/// rows, as under Edge::wrap, all bands share one copy of them.
+class SourceBands {
 public:
-    SourceBand(ImageReader& reader, int capacity)
-        : reader_(reader),
-          image_(make_image(reader.info().depth, reader.info().width, capacity, reader.info().channels())) {}
-
-    /// Makes rows [range) the content of the band.
-    void hold(IndexRange range) {
-        const int kept = std::clamp(end_ - range.begin, 0, range.begin >= begin_ ? range.end - range.begin : 0);
-        if (kept > 0 && range.begin != begin_) move_rows(range.begin - begin_, kept);
-        const int fresh = range.end - range.begin - kept;
-        if (fresh > 0) reader_.read_rows(range.begin + kept, rows_of(view_of(image_), kept, fresh));
-        begin_ = range.begin, end_ = range.end;
+    SourceBands(ImageReader& reader, int capacity) : reader_(reader), is_whole_(capacity == reader.info().height) {
+        const ImageInfo& in = reader.info();
+        bands_.resize(is_whole_ ? 1 : 2);
+        for (Band& band : bands_) band.image = make_image(in.depth, in.width, capacity, in.channels());
     }
 
-    SourceRows rows(const Encoding& encoding) {
-        return {const_view(rows_of(view_of(image_), 0, end_ - begin_)), begin_, encoding};
+    /// Makes band i hold rows [range), after i - 1 and while that may be in use.
+    void load(int i, IndexRange range) {
+        Band& band = of(i);
+        if (is_whole_) {
+            if (i == 0) read(band, {0, reader_.info().height}, 0);
+            return;
+        }
+        const Band& last = of(i + 1);
+        const int kept =
+            range.begin >= last.rows.begin ? std::clamp(last.rows.end - range.begin, 0, range.end - range.begin) : 0;
+        if (kept > 0) copy_rows(last.image, range.begin - last.rows.begin, kept, band.image);
+        read(band, range, kept);
+    }
+
+    SourceRows rows(int i, const Encoding& encoding) {
+        Band& band = of(i);
+        return {const_view(rows_of(view_of(band.image), 0, band.rows.end - band.rows.begin)), band.rows.begin,
+                encoding};
     }
 
 private:
-    void move_rows(int from, int count) {
+    struct Band {
+        AnyImage image;
+        IndexRange rows{0, 0};
+    };
+    Band& of(int i) { return bands_[static_cast<std::size_t>(i) % bands_.size()]; }
+
+    /// Makes rows [range) the content of `band`, which holds the first `kept` of them.
+    void read(Band& band, IndexRange range, int kept) {
+        const int missing = range.end - range.begin - kept;
+        if (missing > 0) reader_.read_rows(range.begin + kept, rows_of(view_of(band.image), kept, missing));
+        band.rows = range;
+    }
+
+    static void copy_rows(const AnyImage& from, int first, int count, AnyImage& to) {
         std::visit(
             [&](auto& image) {
                 const auto v = image.view();
-                std::copy(&v(0, from), &v(0, from) + count * v.dy, &v(0, 0));
+                const auto kept = std::get<std::decay_t<decltype(image)>>(from).view();
+                std::copy_n(&kept(0, first), count * v.dy, &v(0, 0));
             },
-            image_);
+            to);
     }
 
     ImageReader& reader_;
-    AnyImage image_;
-    int begin_ = 0, end_ = 0;
+    bool is_whole_;
+    std::vector<Band> bands_;
 };
 
-/// Output rows per band, so that neither side exceeds the bytes of a band by much.
+/// Output rows per band: so few that stages overlap, and neither side exceeds the bytes of a band by much.
 int rows_per_band(const Resizer& resizer, std::uint64_t source_row, std::uint64_t target_row, int target_height) {
-    int rows = target_height;
-    while (rows > least_rows) {
+    int rows = std::min(target_height, std::max(least_rows, target_height / wanted_bands + 1));
+    const auto exceeds = [&](std::uint64_t limit) {
         const IndexRange needed = resizer.rows_needed(0, rows);
-        const std::uint64_t bytes = std::max(static_cast<std::uint64_t>(needed.end - needed.begin) * source_row,
-                                             static_cast<std::uint64_t>(rows) * target_row);
-        if (bytes <= band_bytes) break;
-        rows = std::max(least_rows, rows / 2);
-    }
+        return std::max(static_cast<std::uint64_t>(needed.end - needed.begin) * source_row,
+                        static_cast<std::uint64_t>(rows) * target_row) > limit;
+    };
+    while (rows > least_rows && exceeds(band_bytes)) rows = std::max(least_rows, rows / 2);
+    while (rows > 1 && exceeds(largest_band_bytes)) rows /= 2;
     return rows;
 }
 
-int largest_band(const Resizer& resizer, int rows, int target_height) {
+/// Rows [first, last) of the output.
+IndexRange band(int i, int rows, int target_height) {
+    const int first = i * rows;
+    return {first, rows < target_height - first ? first + rows : target_height};
+}
+
+int largest_band(const Resizer& resizer, int rows, int bands, int target_height) {
     int largest = 0;
-    for (int y = 0; y < target_height; y += rows) {
-        const IndexRange needed = resizer.rows_needed(y, std::min(y + rows, target_height));
+    for (int i = 0; i < bands; ++i) {
+        const IndexRange out = band(i, rows, target_height);
+        const IndexRange needed = resizer.rows_needed(out.begin, out.end);
         largest = std::max(largest, needed.end - needed.begin);
     }
     return largest;
@@ -80,23 +116,37 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
     const std::uint64_t source_row = row_bytes(in.width, in.channel_names.size(), in.depth);
     const std::uint64_t target_row = row_bytes(target.width, target.channel_names.size(), target.depth);
     const int rows = rows_per_band(resizer, source_row, target_row, target.height);
-    const int source_rows = largest_band(resizer, rows, target.height);
-    require_memory(static_cast<std::uint64_t>(source_rows) * source_row + static_cast<std::uint64_t>(rows) * target_row,
+    const int bands = (target.height - 1) / rows + 1;
+    const int source_rows = largest_band(resizer, rows, bands, target.height);
+    const std::uint64_t copies = source_rows == in.height ? 1 : 2;
+    require_memory(copies * static_cast<std::uint64_t>(source_rows) * source_row +
+                       2 * static_cast<std::uint64_t>(rows) * target_row,
                    "resizing " + std::to_string(in.width) + " x " + std::to_string(in.height) + " pixels");
+    SourceBands source(reader, source_rows);
+    std::array<AnyImage, 2> out;
+    for (AnyImage& image : out)
+        image = make_image(target.depth, target.width, rows, static_cast<int>(target.channel_names.size()));
+    const auto out_rows = [&](int i) {
+        const IndexRange r = band(i, rows, target.height);
+        return rows_of(view_of(out[static_cast<std::size_t>(i % 2)]), 0, r.end - r.begin);
+    };
     Stopwatch watch;
-    SourceBand band(reader, source_rows);
-    AnyImage out = make_image(target.depth, target.width, rows, static_cast<int>(target.channel_names.size()));
     Progress progress("resize", target.height);
-    for (int y = 0; y < target.height; y += rows) {
-        const int count = std::min(rows, target.height - y);
-        const AnyView out_rows = rows_of(view_of(out), 0, count);
-        watch.time(report.read, [&] { band.hold(resizer.rows_needed(y, y + count)); });
+    const auto read = [&](int i, Parallel) {
+        const IndexRange r = band(i, rows, target.height);
+        watch.time(report.read, [&] { source.load(i, resizer.rows_needed(r.begin, r.end)); });
+    };
+    const auto filter = [&](int i, Parallel threads) {
+        const TargetRows to_rows{out_rows(i), band(i, rows, target.height).begin, to, background};
         watch.time(report.filter, [&] {
-            if (resizer.run(band.rows(from), {out_rows, y, to, background}, parallel)) report.lost_non_finite = true;
+            if (resizer.run(source.rows(i, from), to_rows, threads)) report.lost_non_finite = true;
         });
-        watch.time(report.write, [&] { writer.write_rows(const_view(out_rows)); });
-        progress.advance_to(y + count);
-    }
+    };
+    const auto write = [&](int i, Parallel) {
+        watch.time(report.write, [&] { writer.write_rows(const_view(out_rows(i))); });
+        progress.advance_to(band(i, rows, target.height).end);
+    };
+    run_pipeline(bands, {{read}, {filter, true}, {write}}, parallel);
 }
 
 }  // namespace bandlimit::app

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int window_radius = 5, window_size = 2 * window_radius + 1;
 constexpr int block_rows = 64;
-constexpr int moments = 4;  // of every channel: sum, difference, and the squares of both
+constexpr int strip_columns = 512;  // measured at a time by one thread, so that its moments stay in its cache
 constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
 
 int inner(int size, int border) { return size - 2 * border; }
@@ -64,15 +64,38 @@ double similarity(double mu_s, double mu_d, double mean_s2, double mean_d2) {
     return (s2 - d2 + 2 * c1) / (s2 + d2 + 2 * c1) * ((var_s - var_d + 2 * c2) / (var_s + var_d + 2 * c2));
 }
 
+/// Sum, difference, and the squares of both.
+Image<float> moments_of(View<const float> sum_and_difference) {
+    const View<const float> from = sum_and_difference;
+    Image<float> moments(from.width, from.height, 4);
+    const View<float> m = moments.view();
+    for (int y = 0; y < from.height; ++y)
+        for (int p = 0; p < 2; ++p)
+            for (int x = 0; x < from.width; ++x) {
+                const float value = from(x, y, p);
+                m(x, y, p) = value;
+                m(x, y, p + 2) = value * value;
+            }
+    return moments;
+}
+
 /// Runs rows, then columns, a plane at a time: the lanes of a single plane are contiguous along y.
-Image<float> windowed(const Bank& along_x, const Bank& along_y, View<const float> planes, Parallel parallel) {
+Image<float> windowed(const Bank& along_x, const Bank& along_y, View<const float> planes) {
     Image<float> rows(along_x.output_count(), planes.height, planes.channels);
-    apply(along_x, planes, rows.view(), parallel);
+    apply(along_x, planes, rows.view(), {1});
     Image<float> means(along_x.output_count(), along_y.output_count(), planes.channels);
     for (int p = 0; p < planes.channels; ++p)
         apply(along_y, transposed(channels_of(std::as_const(rows).view(), p)), transposed(channels_of(means.view(), p)),
-              parallel);
+              {1});
     return means;
+}
+
+/// The similarities of row `y` of such means, added up.
+double row_similarity(View<const float> m, int y) {
+    double total = 0;
+    for (int x = 0; x < m.width; ++x)
+        total += similarity(double(m(x, y, 0)), double(m(x, y, 1)), double(m(x, y, 2)), double(m(x, y, 3)));
+    return total;
 }
 
 }  // namespace
@@ -129,7 +152,7 @@ SsimMeter::SsimMeter(int width, int height, int channels, int border, Parallel p
     check_meter("SsimMeter", width, height, channels, border);
     const int w = inner(width, border), h = inner(height, border);
     small_ = std::min(w, h) < window_size;
-    planes_ = Image<float>(w, small_ ? h : std::min(h, block_rows + window_size - 1), moments * channels);
+    planes_ = Image<float>(w, small_ ? h : std::min(h, block_rows + window_size - 1), 2 * channels);
     total_.resize(static_cast<std::size_t>(channels));
 }
 
@@ -138,33 +161,34 @@ void SsimMeter::hold_row(View<const float> a, View<const float> b, int y) {
     for (int c = 0; c < a.channels; ++c)
         for (int x = 0; x < planes.width; ++x) {
             const float va = finite_or_zero(a(x + border_, y, c)), vb = finite_or_zero(b(x + border_, y, c));
-            const float sum = (va - 0.5f) + (vb - 0.5f), difference = va - vb;
-            planes(x, held_, moments * c) = sum;
-            planes(x, held_, moments * c + 1) = difference;
-            planes(x, held_, moments * c + 2) = sum * sum;
-            planes(x, held_, moments * c + 3) = difference * difference;
+            planes(x, held_, 2 * c) = (va - 0.5f) + (vb - 0.5f);
+            planes(x, held_, 2 * c + 1) = va - vb;
         }
     ++held_;
 }
 
 void SsimMeter::measure_held() {
     const View<float> held = cropped(planes_.view(), 0, 0, planes_.width(), held_);
-    const Image<float> means = windowed(window_bank(held.width, small_), window_bank(held_, small_), held, parallel_);
-    const View<const float> m = means.view();
-    const std::size_t channels = total_.size();
-    std::vector<double> row_sums(static_cast<std::size_t>(m.height) * channels);
-    parallel_for(m.height, 16, parallel_, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        for (int y = static_cast<int>(first); y < last; ++y)
-            for (int c = 0; c < static_cast<int>(channels); ++c) {
-                double total = 0;
-                for (int x = 0; x < m.width; ++x)
-                    total += similarity(double(m(x, y, moments * c)), double(m(x, y, moments * c + 1)),
-                                        double(m(x, y, moments * c + 2)), double(m(x, y, moments * c + 3)));
-                row_sums[static_cast<std::size_t>(y) * channels + static_cast<std::size_t>(c)] = total;
-            }
+    const int beyond = small_ ? 0 : window_size - 1;  // columns that the window reaches, left and right together
+    const int columns = held.width - beyond, strip = small_ ? columns : std::min(columns, strip_columns);
+    const int strips = (columns - 1) / strip + 1;
+    const Bank along_y = window_bank(held_, small_), along_x = window_bank(strip + beyond, small_);
+    const Bank along_last = window_bank(columns - (strips - 1) * strip + beyond, small_);
+    const std::size_t channels = total_.size(), jobs = static_cast<std::size_t>(strips) * channels;
+    const int rows = along_y.output_count();
+    std::vector<double> sums(static_cast<std::size_t>(rows) * jobs);  // of rows, then strips, then channels
+    parallel_for(static_cast<std::ptrdiff_t>(jobs), 1, parallel_, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        for (auto job = static_cast<std::size_t>(first); job < static_cast<std::size_t>(last); ++job) {
+            const int s = static_cast<int>(job / channels), c = static_cast<int>(job % channels), x = s * strip;
+            const View<const float> part = cropped(held, x, 0, std::min(strip, columns - x) + beyond, held_);
+            const Image<float> means = windowed(s + 1 < strips ? along_x : along_last, along_y,
+                                                moments_of(channels_of(part, 2 * c, 2)).view());
+            for (int y = 0; y < rows; ++y)
+                sums[static_cast<std::size_t>(y) * jobs + job] = row_similarity(means.view(), y);
+        }
     });
-    for (std::size_t i = 0; i < row_sums.size(); ++i) total_[i % channels] += row_sums[i];
-    positions_ += double(m.width) * m.height;
+    for (std::size_t i = 0; i < sums.size(); ++i) total_[i % channels] += sums[i];
+    positions_ += double(columns) * rows;
     if (small_) return;
     // The next window begins in the rows that this one ended with.
     const int kept = window_size - 1;

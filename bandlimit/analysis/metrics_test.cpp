@@ -144,6 +144,24 @@ TEST(Meters, GiveTheSameBitsForAnyBlocksAndThreads) {
     }
 }
 
+TEST(Meters, MeasureWideImagesByStripsOfColumns) {
+    // Against the definition where one strip ends and the next, of a few columns, begins; and the same bits again.
+    const int width = 2 * 512 + 13, height = 12;
+    const Image<float> a = noise(width, height, 2, 14), b = mixed(a.view(), noise(width, height, 2, 15).view(), 0.3f);
+    for (int c = 0; c < 2; ++c) {
+        const View<const float> va = channels_of(a.view(), c), vb = channels_of(b.view(), c);
+        EXPECT_NEAR(ssim(va, vb), direct_ssim(va, vb), 2e-5);
+    }
+    const double one = compare(a.view(), b.view(), 0, {1}).ssim;
+    EXPECT_EQ(compare(a.view(), b.view(), 0, {3}).ssim, one);
+    SsimMeter meter(width, height, 2, 0, {2});
+    for (int y = 0; y < height; ++y)
+        meter.add_rows(cropped(a.view(), 0, y, width, 1), cropped(b.view(), 0, y, width, 1));
+    std::vector<Measures> channels;
+    meter.fill(channels);
+    EXPECT_EQ(summarize(channels).ssim, one);
+}
+
 TEST(Meters, DoNotDependOnTheLayout) {
     const Image<float> a = noise(20, 15, 3, 10), b = noise(20, 15, 3, 11);
     Image<float> interleaved(20, 15, 3, Layout::interleaved);

@@ -30,13 +30,15 @@ const std::array<Format, 12>& formats() {
           .largest_side = 1000000}},
         {{"jpg", "jpeg", "jpe"},
          {.name = "jpeg", .depths = {u8}, .channels = {1, 3}, .largest_channels = 3, .largest_side = 65500}},
-        {{"tif", "tiff"}, {.name = "tiff", .depths = {f32, u16, u8}, .alpha = true, .largest_channels = 1024}},
+        {{"tif", "tiff"},
+         {.name = "tiff", .depths = {f32, u16, u8}, .alpha = true, .tiles = true, .largest_channels = 1024}},
         {{"exr"},
          {.name = "openexr",
           .depths = {f32, f16},
           .alpha = true,
           .associated = true,
           .is_linear = true,
+          .tiles = true,
           .largest_channels = 1024}},
         {{"hdr", "rgbe"}, {.name = "hdr", .depths = {f32}, .is_linear = true, .channels = {3}, .largest_channels = 3}},
         {{"ppm"}, {.name = "pnm", .depths = {u16, u8}, .channels = {3}, .largest_channels = 3}},
@@ -103,6 +105,15 @@ Depth nearest_depth(const FormatAbilities& format, Depth wanted) {
     for (const Depth depth : preferences[static_cast<std::size_t>(wanted)])
         if (std::find(format.depths.begin(), format.depths.end(), depth) != format.depths.end()) return depth;
     return format.depths.front();
+}
+
+void check_tile(const FormatAbilities& format, int tile) {
+    constexpr int multiple = 16, largest = 4096;  // TIFF asks for the first; the second bounds a row of tiles
+    if (tile == 0) return;
+    if (!format.tiles) fail("tiles of ", tile, ": ", format.name, " files store rows; choose TIFF or EXR");
+    if (tile < multiple || tile > largest || tile % multiple != 0)
+        fail("tiles of ", tile, " pixels do not exist; pass a multiple of ", multiple, " from ", multiple, " to ",
+             largest, ", as 256, or 0 for none");
 }
 
 std::string format_of(std::span<const unsigned char> head, const std::string& path) {

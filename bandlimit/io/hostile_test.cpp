@@ -34,14 +34,24 @@ std::string number(std::uint64_t value, int bytes, bool is_big = false) {
     return text;
 }
 
+/// A file of 33 x 24 pixels; with tiles if `kind` says so.
+void write_small(const std::string& path, const std::string& kind, Depth depth) {
+    AnyImage image = noise(depth, 33, 24, 3);
+    ImageTarget target = target_of(depth, 33, 24, 3);
+    if (kind.ends_with("tiles")) target.tile = 16;
+    write_image(path, target, pixels(image));
+}
+
+std::string extension_of(const std::string& kind) { return kind.substr(0, kind.find(' ')); }
+
 TEST(Hostile, CutFilesAreRefusedOrWhole) {
     const Folder folder;
-    for (const std::string extension : {"png", "jpg", "tif", "exr", "hdr", "ppm", "pfm", "webp", "tga", "bmp"}) {
-        SCOPED_TRACE(extension);
+    for (const std::string kind :
+         {"png", "jpg", "tif", "tif tiles", "exr", "exr tiles", "hdr", "ppm", "pfm", "webp", "tga", "bmp"}) {
+        SCOPED_TRACE(kind);
+        const std::string extension = extension_of(kind);
         const std::string whole = folder / ("whole." + extension), cut = folder / ("cut." + extension);
-        const Depth depth = abilities_of(whole).depths.front();
-        AnyImage image = noise(depth, 33, 24, 3);
-        write_image(whole, target_of(depth, 33, 24, 3), pixels(image));
+        write_small(whole, kind, abilities_of(whole).depths.front());
         const AnyImage expected = read_image(whole);
         const std::string bytes = bytes_of(whole);
         Random random(1);
@@ -62,12 +72,12 @@ TEST(Hostile, CutFilesAreRefusedOrWhole) {
 
 TEST(Hostile, DamagedBytesNeverCrash) {
     const Folder folder;
-    for (const std::string extension : {"png", "jpg", "tif", "exr", "hdr", "ppm", "webp", "tga", "bmp"}) {
-        SCOPED_TRACE(extension);
+    for (const std::string kind :
+         {"png", "jpg", "tif", "tif tiles", "exr", "exr tiles", "hdr", "ppm", "webp", "tga", "bmp"}) {
+        SCOPED_TRACE(kind);
+        const std::string extension = extension_of(kind);
         const std::string whole = folder / ("whole." + extension), bad = folder / ("bad." + extension);
-        const Depth depth = abilities_of(whole).depths.back();
-        AnyImage image = noise(depth, 33, 24, 3);
-        write_image(whole, target_of(depth, 33, 24, 3), pixels(image));
+        write_small(whole, kind, abilities_of(whole).depths.back());
         const std::string bytes = bytes_of(whole);
         Random random(2);
         for (int i = 0; i < 60; ++i) {
@@ -92,20 +102,43 @@ struct Promise {
     std::string name, bytes;
 };
 
-std::string tiff(std::uint32_t w, std::uint32_t h, std::uint32_t rows_per_strip, std::uint32_t compression) {
-    const std::array<std::array<std::uint32_t, 3>, 9> entries{{{256, 4, w},
-                                                               {257, 4, h},
-                                                               {258, 3, 8},
-                                                               {259, 3, compression},
-                                                               {262, 3, 1},
-                                                               {273, 4, 8},
-                                                               {277, 3, 1},
-                                                               {278, 4, rows_per_strip},
-                                                               {279, 4, 100}}};
+struct TiffEntry {
+    std::uint64_t tag, type, count, value;
+};
+
+/// A TIFF of 100 bytes and a directory.
+std::string tiff(const std::vector<TiffEntry>& entries) {
     std::string text = std::string("II*\0", 4) + number(108, 4) + std::string(100, 'x') + number(entries.size(), 2);
-    for (const auto& [tag, type, value] : entries)
-        text += number(tag, 2) + number(type, 2) + number(1, 4) + number(value, 4);
+    for (const TiffEntry& e : entries)
+        text += number(e.tag, 2) + number(e.type, 2) + number(e.count, 4) + number(e.value, 4);
     return text + number(0, 4);
+}
+
+std::string tiff(std::uint64_t w, std::uint64_t h, std::uint64_t rows_per_strip, std::uint64_t compression) {
+    return tiff({{256, 4, 1, w},
+                 {257, 4, 1, h},
+                 {258, 3, 1, 8},
+                 {259, 3, 1, compression},
+                 {262, 3, 1, 1},
+                 {273, 4, 1, 8},
+                 {277, 3, 1, 1},
+                 {278, 4, 1, rows_per_strip},
+                 {279, 4, 1, 100}});
+}
+
+/// Tiles of `tile_w` x `tile_h`, `count` of which are listed, where the file ends if there are more than one.
+std::string tiled_tiff(std::uint64_t w, std::uint64_t h, std::uint64_t tile_w, std::uint64_t tile_h,
+                       std::uint64_t compression, std::uint64_t count = 1) {
+    return tiff({{256, 4, 1, w},
+                 {257, 4, 1, h},
+                 {258, 3, 1, 8},
+                 {259, 3, 1, compression},
+                 {262, 3, 1, 1},
+                 {277, 3, 1, 1},
+                 {322, 4, 1, tile_w},
+                 {323, 4, 1, tile_h},
+                 {324, 4, count, 8},
+                 {325, 4, count, 100}});
 }
 
 std::string exr(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, char compression, int tile) {
@@ -174,6 +207,23 @@ std::vector<Promise> promises() {
             {"tif", tiff(100000, most, most, 5)},
             {"tif", tiff(most, most, most, 4)},
             {"tif", tiff(0, 0, 1, 1)},
+            {"tif", tiled_tiff(40, 30, 0, 0, 1)},
+            {"tif", tiled_tiff(40, 30, 0, 16, 8)},
+            {"tif", tiled_tiff(40, 30, 16, 0, 5)},
+            {"tif", tiled_tiff(40, 30, 7, 5, 1)},
+            {"tif", tiled_tiff(40, 30, 16, 16, 1)},     // six tiles, of which one is listed
+            {"tif", tiled_tiff(40, 30, 16, 16, 8, 6)},  // whose places lie in the middle of pixels
+            {"tif", tiled_tiff(40, 30, most, 16, 8)},   // a tile far larger than the picture
+            {"tif", tiled_tiff(40, 30, 16, most, 5)},
+            {"tif", tiled_tiff(40, 30, most, most, 8)},
+            {"tif", tiled_tiff(40, 30, 0xfffffff0, 0xfffffff0, 8)},
+            {"tif", tiled_tiff(40, 30, 65536, 32752, 8)},  // just below 2 GiB
+            {"tif", tiled_tiff(40, 30, 65536, 65536, 4)},  // of a compression without a bound
+            {"tif", tiled_tiff(most, most, 256, 256, 8)},
+            {"tif", tiled_tiff(most, most, 16, 1 << 20, 8)},
+            {"tif", tiled_tiff(most, most, 16, 16, 7, most)},
+            {"tif", tiled_tiff(most, 16, 16, 16, 8, 0xffffffff)},
+            {"tif", tiled_tiff(0, 0, 16, 16, 1)},
             {"exr", exr(0, 0, most - 1, most - 1, 0, 0)},
             {"exr", exr(0, 0, 15, (1 << 30) - 2, 0, 0)},
             {"exr", exr(-(1 << 30) + 2, 0, (1 << 29), 15, 3, 0)},

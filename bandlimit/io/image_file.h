@@ -83,6 +83,7 @@ struct ImageTarget {
     Transfer transfer = Transfer::srgb;               ///< noted in the file where the format can
     bool is_data = false;                             ///< values are no colours: no colour space is noted
     const ImageReader::Metadata* metadata = nullptr;  ///< taken over, with ICC profile, if not null
+    int tile = 0;                                     ///< side of square tiles, see check_tile(); 0 stores rows
 };
 
 /// What a format, known by the extension of a path, can hold. Throws Error for an unknown extension, naming known ones.
@@ -92,6 +93,7 @@ struct FormatAbilities {
     bool alpha = false;              ///< holds an alpha channel
     bool associated = false;         ///< alpha is stored associated (EXR)
     bool is_linear = false;          ///< holds linear light by convention (EXR, HDR, PFM)
+    bool tiles = false;              ///< can store square tiles
     bool notes_space = false;        ///< can say whether its codes are sRGB or linear (PNG)
     std::vector<int> channels = {};  ///< the numbers it holds: 4 are RGBA, 2 grey and alpha; empty = any, each its own
     int largest_channels = 4;
@@ -102,10 +104,17 @@ FormatAbilities abilities_of(const std::string& path);
 /// The depth of `wanted` or the nearest that the format holds.
 Depth nearest_depth(const FormatAbilities& format, Depth wanted);
 
+/// Throws Error unless files of this format can have square tiles of side `tile`: TIFF and EXR, in multiples of 16 from
+/// 16 to 4096. 0, for none, always fits.
+void check_tile(const FormatAbilities& format, int tile);
+
 /// Writes a file beside `path` and renames it when all is well: the file appears whole or not at all.
 ///
 /// A path that exists and is no regular file is refused, before its extension is looked at; directories are not
-/// created. throws   std::runtime_error as ImageReader
+/// created. A TIFF that could grow beyond 4 GB is written as BigTIFF.
+/// cost     the rows that a codec compresses together; with tiles, a row of tiles
+/// threads  as ImageReader
+/// throws   std::runtime_error as ImageReader; Error for what no file of this format can be
 class ImageWriter {
 public:
     ImageWriter(const std::string& path, const ImageTarget& target, int threads = 0);

@@ -206,6 +206,60 @@ TEST(ImageFile, TilesLevelsAndDataWindowsAreRead) {
     }
 }
 
+TEST(ImageFile, TilesComeBackForAnyBlocksOfRows) {
+    // Sizes that end within a tile, at its end, and before the first one ends; two tiles of 16 are a call, or many are.
+    const Folder folder;
+    for (const std::string extension : {"tif", "exr"})
+        for (const Depth depth : abilities_of("x." + extension).depths)
+            for (const int threads : {1, 4})
+                for (const auto& [w, h, tile] :
+                     {std::array{37, 29, 16}, {64, 32, 32}, {5, 3, 16}, {70, 49, 48}, {1, 40, 16}, {300, 20, 16}}) {
+                    SCOPED_TRACE(message(extension, " ", name_of(depth), " ", w, " x ", h, " / ", tile));
+                    const std::string path = folder / ("a." + extension);
+                    AnyImage image = noise(depth, w, h, 4), again = make_image(depth, w, h, 4);
+                    ImageTarget target = target_of(depth, w, h, 4);
+                    target.tile = tile;
+                    ImageWriter writer(path, target, threads);
+                    for (int y = 0, rows = 1; y < h; y += rows, rows = std::min(rows + 6, h - y))
+                        writer.write_rows(const_view(rows_of(view_of(image), y, rows)));
+                    writer.finish();
+
+                    const auto stored = OIIO::ImageInput::open(path);
+                    ASSERT_TRUE(stored);
+                    EXPECT_EQ(stored->spec().tile_width, tile);
+                    EXPECT_EQ(stored->spec().tile_height, tile);
+                    ImageReader reader(path, threads);
+                    for (int y = 0, rows = 5; y < h; y += rows, rows = std::min(rows + 9, h - y))
+                        reader.read_rows(y, rows_of(view_of(again), y, std::min(rows, h - y)));
+                    EXPECT_TRUE(equal(pixels(image), pixels(again)));
+                }
+    EXPECT_EQ(folder.count(), 2) << "something else was left behind";
+}
+
+TEST(ImageFile, ManyTilesTakeSeveralCalls) {
+    // 2048 x 16 tiles of 16 floats: more bytes than go through OpenImageIO at once.
+    const Folder folder;
+    constexpr int w = 20000, h = 33, tile = 32;
+    AnyImage image = noise(Depth::f32, w, h, 8);
+    ImageTarget target = target_of(Depth::f32, w, h, 8);
+    target.tile = tile;
+    write_image(folder / "a.tif", target, pixels(image));
+    AnyImage again = read_image(folder / "a.tif");
+    EXPECT_TRUE(equal(pixels(image), pixels(again)));
+}
+
+TEST(ImageFile, TilesThatNoFileHasAreRefused) {
+    const Folder folder;
+    ImageTarget target = target_of(Depth::u8, 40, 30, 3);
+    for (const int tile : {-16, 1, 8, 17, 24, 4112, 1 << 30}) {
+        target.tile = tile;
+        EXPECT_THROW(ImageWriter(folder / "a.tif", target, 1), Error) << tile;
+    }
+    target.tile = 16;
+    EXPECT_THROW(ImageWriter(folder / "a.png", target, 1), Error);
+    EXPECT_EQ(folder.count(), 0);
+}
+
 TEST(ImageFile, LevelsAndSubimagesAreCounted) {
     const Folder folder;
     OIIO::ImageBuf picture(OIIO::ImageSpec(32, 32, 1, OIIO::TypeDesc::FLOAT));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <new>
 #include <optional>
 #include <type_traits>
@@ -11,31 +12,12 @@
 #include "bandlimit/io/file_error.h"
 #include "bandlimit/io/oiio.h"
 #include "bandlimit/io/orientation.h"
+#include "bandlimit/io/packed.h"
 #include "bandlimit/io/pnm.h"
 #include "bandlimit/io/probe.h"
 
 namespace bandlimit {
 namespace {
-
-/// Whether the samples of a row lie as files have them: channels side by side, pixels side by side.
-template <class T>
-bool is_packed(const View<T>& v) {
-    return (v.channels == 1 || v.dc == 1) && v.dx == v.channels &&
-           (v.height == 1 || v.dy >= static_cast<std::ptrdiff_t>(v.width) * v.channels);
-}
-
-template <class T>
-void copy(const View<const T>& from, const View<T>& to) {
-    for (int y = 0; y < from.height; ++y)
-        for (int x = 0; x < from.width; ++x)
-            for (int c = 0; c < from.channels; ++c) to(x, y, c) = from(x, y, c);
-}
-
-/// Rows of one picture side by side in memory.
-template <class T>
-View<T> packed_view(T* data, int width, int height, int channels) {
-    return {data, width, height, channels, channels, static_cast<std::ptrdiff_t>(width) * channels, 1};
-}
 
 /// Divides the colour of 8-bit RGBA by its alpha: the inverse of what OpenImageIO does to WebP.
 void divide_by_alpha(std::span<std::uint8_t> pixels) {
@@ -93,6 +75,8 @@ private:
     template <class T>
     void read_scanlines(int y, const View<T>& to);
     template <class T>
+    bool read_tiles(const View<T>& to, int y);
+    template <class T>
     View<const T> tile_row(int y);
     template <class T>
     Image<T>& whole();
@@ -145,24 +129,31 @@ void ImageReader::State::check_spec() const {
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
         fail_file(path, "claims ", spec.width, " x ", spec.height, " pixels of ", spec.nchannels,
                   " channels; the file is damaged");
-    if (spec.tile_width < 0 || spec.tile_height < 0 || (spec.tile_width > 0) != (spec.tile_height > 0))
+    // No codec takes a tile of 2 GiB, and few take one that long gracefully.
+    constexpr std::uint64_t largest_tile = std::numeric_limits<std::int32_t>::max();
+    if (spec.tile_width < 0 || spec.tile_height < 0 || (spec.tile_width > 0) != (spec.tile_height > 0) ||
+        spec.tile_bytes() > largest_tile)
         fail_file(path, "claims tiles of ", spec.tile_width, " x ", spec.tile_height, " pixels; the file is damaged");
 }
 
 void ImageReader::State::check_sizes() const {
-    const std::uint64_t tiles_across = spec.tile_width > 0 ? (spec.width - 1) / spec.tile_width + 1 : 0;
-    const std::uint64_t row_pixels =
-        std::max(static_cast<std::uint64_t>(spec.width), tiles_across * static_cast<std::uint64_t>(spec.tile_width));
+    const bool is_tiled = spec.tile_width > 0;
     const std::uint64_t pixel_bytes = static_cast<std::uint64_t>(spec.nchannels) * size_of(info.depth);
-    const std::uint64_t row_bytes = saturating_product(row_pixels, pixel_bytes);
-    const std::uint64_t claimed = saturating_product(
-        static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height), pixel_bytes);
+    const std::uint64_t row_bytes = saturating_product(static_cast<std::uint64_t>(spec.width), pixel_bytes);
+    const std::uint64_t tile_pixels = static_cast<std::uint64_t>(spec.tile_width) * spec.tile_height;
+    const std::uint64_t tile_bytes = is_tiled ? saturating_product(tile_pixels, pixel_bytes) : 0;
+    std::uint64_t claimed = saturating_product(static_cast<std::uint64_t>(spec.height), row_bytes);
+    if (found.format == "tiff") claimed = std::max(claimed, tile_bytes);  // which stores even a single tile whole
     const std::uint64_t expansion =
         largest_expansion(found.format, spec.get_string_attribute("compression"), row_bytes);
     if (expansion > 0 && claimed / expansion > found.bytes)
-        fail_file(path, "claims ", spec.width, " x ", spec.height, " pixels, for which its ", found.bytes,
-                  " bytes are too few; the file is damaged or cut short");
-    require_memory(saturating_product(row_bytes, static_cast<std::uint64_t>(rows_at_once(spec, found))), path);
+        fail_file(path, "claims ", spec.width, " x ", spec.height, " pixels",
+                  is_tiled ? message(" in tiles of ", spec.tile_width, " x ", spec.tile_height) : "",
+                  ", for which its ", found.bytes, " bytes are too few; the file is damaged or cut short");
+    // OpenImageIO holds what it reads at once up to three times: compressed, decoded, and in order.
+    const std::uint64_t copies = is_tiled ? 3 * std::max(tile_bytes, std::min(bytes_at_once, row_bytes)) : 0;
+    const std::uint64_t rows = saturating_product(row_bytes, static_cast<std::uint64_t>(rows_at_once(spec, found)));
+    require_memory(rows > std::numeric_limits<std::uint64_t>::max() - copies ? rows : rows + copies, path);
 }
 
 void ImageReader::State::count_parts() {
@@ -196,6 +187,20 @@ void ImageReader::State::read_scanlines(int y, const View<T>& to) {
                   "; the file is damaged or cut short");
 }
 
+/// Reads a row of tiles, whose first row is `y`, some tiles at a time.
+template <class T>
+bool ImageReader::State::read_tiles(const View<T>& to, int y) {
+    const auto size = static_cast<OIIO::stride_t>(sizeof(T));
+    const int columns = tile_columns_at_once(spec);
+    for (int x = 0, end = 0; x < to.width; x = end) {
+        end = columns < to.width - x ? x + columns : to.width;
+        if (!input->read_tiles(0, 0, spec.x + x, spec.x + end, spec.y + y, spec.y + y + to.height, spec.z, spec.z + 1,
+                               0, spec.nchannels, type_of(info.depth), &to(x, 0), size * to.dx, size * to.dy))
+            return false;
+    }
+    return true;
+}
+
 template <class T>
 View<const T> ImageReader::State::tile_row(int y) {
     const int first = y - y % spec.tile_height;
@@ -206,8 +211,7 @@ View<const T> ImageReader::State::tile_row(int y) {
         first_tile_row_ = -1;
         const bool is_read = guarded([&] {
             rows_.resize(bytes);
-            return input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + first + rows, spec.z,
-                                     spec.z + 1, 0, spec.nchannels, type_of(info.depth), rows_.data());
+            return read_tiles(packed_view(reinterpret_cast<T*>(rows_.data()), spec.width, rows, spec.nchannels), first);
         });
         if (!is_read || input->has_error())
             fail_file(path, "the tiles of rows ", first, " to ", first + rows - 1,
@@ -238,7 +242,7 @@ void ImageReader::State::read_stored(int y, const View<T>& to) {
             rows = row;
         }
         const int count = std::min(rows.height - skipped, to.height - done);
-        copy(cropped(rows, 0, skipped, to.width, count), cropped(to, 0, done, to.width, count));
+        copy_samples(cropped(rows, 0, skipped, to.width, count), cropped(to, 0, done, to.width, count));
         done += count;
     }
 }
@@ -261,7 +265,7 @@ template <class T>
 void ImageReader::State::read_upright(int y, const View<T>& to) {
     if (keeps_rows(info.orientation)) return read_stored(y, info.orientation == 2 ? flipped_x(to) : to);
     const View<const T> picture = std::as_const(whole<T>()).view();
-    copy(cropped(upright(picture, info.orientation), 0, y, to.width, to.height), to);
+    copy_samples(cropped(upright(picture, info.orientation), 0, y, to.width, to.height), to);
 }
 
 ImageReader::ImageReader(const std::string& path, int threads) : state_(std::make_unique<State>(path, threads)) {}

@@ -10,6 +10,7 @@
 #include "bandlimit/io/atomic_file.h"
 #include "bandlimit/io/file_error.h"
 #include "bandlimit/io/oiio.h"
+#include "bandlimit/io/packed.h"
 #include "bandlimit/io/pnm.h"
 
 namespace bandlimit {
@@ -99,6 +100,7 @@ OIIO::ImageSpec spec_of(const ImageTarget& target, const FormatAbilities& format
     spec.channelnames = target.channel_names;
     spec.alpha_channel = alpha_in_file(target);
     spec.z_channel = -1;
+    spec.tile_width = spec.tile_height = target.tile;
     if (target.metadata != nullptr) take_over(*target.metadata, target, spec);
     spec.attribute("Orientation", 1);
     if (!format.associated) spec.attribute("oiio:UnassociatedAlpha", 1);
@@ -126,6 +128,7 @@ void check_target(const std::string& path, const ImageTarget& target, const Form
     if (format.largest_side > 0 && std::max(target.width, target.height) > format.largest_side)
         fail_file(path, format.name, " holds at most ", format.largest_side, " pixels a side, not ", target.width,
                   " x ", target.height, "; choose TIFF or EXR");
+    check_tile(format, target.tile);
     if (target.alpha >= 0 && !format.alpha)
         fail_file(path, format.name, " is written without alpha; give a background colour, or write PNG, TIFF or EXR");
     const bool is_held = format.channels.empty() ? channels <= format.largest_channels
@@ -143,9 +146,13 @@ bool is_whole_tiff(const std::string& path, const ImageTarget& target) {
     const auto in = OIIO::ImageInput::create("tiff");
     OIIO::ImageSpec spec;
     if (!in || !in->open(path, spec)) return false;
-    std::vector<std::byte> row(spec.scanline_bytes());
-    return spec.width == target.width && spec.height == target.height &&
-           in->read_scanline(target.height - 1, 0, spec.format, row.data()) && !in->has_error();
+    if (spec.width != target.width || spec.height != target.height) return false;
+    const int x = target.width - 1, y = target.height - 1;
+    std::vector<std::byte> last(target.tile > 0 ? spec.tile_bytes() : spec.scanline_bytes());
+    const bool is_read = target.tile > 0
+                             ? in->read_tile(x - x % target.tile, y - y % target.tile, 0, spec.format, last.data())
+                             : in->read_scanline(y, 0, spec.format, last.data());
+    return is_read && !in->has_error();
 }
 
 }  // namespace
@@ -166,12 +173,19 @@ struct ImageWriter::State {
 private:
     template <class Work>
     void guarded(Work work);
+    template <class T>
+    void write_scanlines(const View<const T>& rows);
+    template <class T>
+    void write_tiled(const View<const T>& rows);
+    template <class T>
+    void write_tiles(const View<const T>& rows, int y);
 
     std::optional<AtomicFile> file_;
     std::optional<Output> proxy_;
     OIIO::ImageOutput::unique_ptr output_;  ///< null for PNM
     PnmLayout pnm_;
     bool is_tiff_ = false;
+    AnyImage tile_row_;  ///< rows that wait for the rest of their tiles
 };
 
 ImageWriter::State::State(const std::string& path_to_write, const ImageTarget& wanted, int threads)
@@ -188,6 +202,13 @@ ImageWriter::State::State(const std::string& path_to_write, const ImageTarget& w
         pnm_ = write_pnm_header(*file_, target.width, target.height, static_cast<int>(target.channel_names.size()),
                                 target.depth);
         return;
+    }
+    if (target.tile > 0) {
+        const auto channels = target.channel_names.size();
+        require_memory(saturating_product(static_cast<std::uint64_t>(target.width) * channels,
+                                          static_cast<std::uint64_t>(target.tile) * size_of(target.depth)),
+                       path);
+        tile_row_ = make_image(target.depth, target.width, target.tile, static_cast<int>(channels));
     }
     use_threads(threads);
     output_ = OIIO::ImageOutput::create(format.name);
@@ -229,36 +250,60 @@ void ImageWriter::State::guarded(Work work) {
 }
 
 template <class T>
+void ImageWriter::State::write_scanlines(const View<const T>& rows) {
+    if (!is_packed(rows)) {
+        std::vector<T> packed(static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(rows.channels));
+        const View<T> row = packed_view(packed.data(), rows.width, 1, rows.channels);
+        for (int y = 0; y < rows.height; ++y) {
+            copy_samples(cropped(rows, 0, y, rows.width, 1), row);
+            guarded([&] { return output_->write_scanline(next_row + y, 0, type_of(target.depth), row.data); });
+        }
+        return;
+    }
+    const auto size = static_cast<OIIO::stride_t>(sizeof(T));
+    guarded([&] {
+        return output_->write_scanlines(next_row, next_row + rows.height, 0, type_of(target.depth), rows.data,
+                                        size * rows.dx, size * rows.dy);
+    });
+}
+
+/// Collects rows until they make a row of tiles.
+template <class T>
+void ImageWriter::State::write_tiled(const View<const T>& rows) {
+    const View<T> held = std::get<Image<T>>(tile_row_).view();
+    for (int done = 0; done < rows.height;) {
+        const int y = next_row + done, above = y % target.tile;
+        const int count = std::min(rows.height - done, target.tile - above);
+        copy_samples(cropped(rows, 0, done, rows.width, count), cropped(held, 0, above, rows.width, count));
+        done += count;
+        if (above + count == target.tile || y + count == target.height)
+            write_tiles<T>(cropped(held, 0, 0, rows.width, above + count), y - above);
+    }
+}
+
+/// Writes a row of tiles, whose first row is `y`, some tiles at a time.
+template <class T>
+void ImageWriter::State::write_tiles(const View<const T>& rows, int y) {
+    const auto size = static_cast<OIIO::stride_t>(sizeof(T));
+    const int columns = tile_columns_at_once(output_->spec());
+    for (int x = 0, end = 0; x < rows.width; x = end) {
+        end = columns < rows.width - x ? x + columns : rows.width;
+        guarded([&] {
+            return output_->write_tiles(x, end, y, y + rows.height, 0, 1, type_of(target.depth), &rows(x, 0),
+                                        size * rows.dx, size * rows.dy);
+        });
+    }
+}
+
+template <class T>
 void ImageWriter::State::write(const View<const T>& rows) {
     if (!output_) {
         write_pnm_rows(*file_, pnm_, next_row, rows);
         file_->check();
+    } else if (target.tile > 0) {
+        write_tiled(rows);
     } else {
-        const bool is_packed = (rows.channels == 1 || rows.dc == 1) && rows.dx == rows.channels && rows.dy > 0;
-        std::vector<T> packed;
-        View<const T> from = rows;
-        for (int y = 0; y < rows.height;) {
-            const int count = is_packed ? rows.height : 1;
-            from = cropped(rows, 0, y, rows.width, count);
-            if (!is_packed) {
-                packed.clear();
-                for (int x = 0; x < rows.width; ++x)
-                    for (int c = 0; c < rows.channels; ++c) packed.push_back(rows(x, y, c));
-                from = {packed.data(),
-                        rows.width,
-                        1,
-                        rows.channels,
-                        rows.channels,
-                        static_cast<std::ptrdiff_t>(rows.width) * rows.channels,
-                        1};
-            }
-            const auto size = static_cast<OIIO::stride_t>(sizeof(T));
-            guarded([&] {
-                return output_->write_scanlines(next_row + y, next_row + y + count, 0, type_of(target.depth), from.data,
-                                                size * from.channels, size * from.dy);
-            });
-            y += count;
-        }
+        write_scanlines(rows);
     }
     next_row += rows.height;
 }

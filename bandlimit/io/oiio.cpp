@@ -1,5 +1,6 @@
 #include "bandlimit/io/oiio.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include "bandlimit/core/parallel.h"
@@ -14,6 +15,12 @@ void use_threads(int threads) {
     OIIO::attribute("exr_threads", count == 1 ? -1 : count);  // -1: no pool, the caller decodes
     // We check sizes ourselves, against the memory of this machine and the length of the file.
     OIIO::attribute("limits:imagesize_MB", 0);
+}
+
+int tile_columns_at_once(const OIIO::ImageSpec& spec) {
+    const std::uint64_t tile_bytes = std::max<std::uint64_t>(1, spec.tile_bytes());
+    const auto most = static_cast<std::uint64_t>(std::numeric_limits<int>::max() / spec.tile_width);
+    return spec.tile_width * static_cast<int>(std::clamp<std::uint64_t>(bytes_at_once / tile_bytes, 1, most));
 }
 
 std::string_view profile_in(const OIIO::ParamValueList& attributes) {

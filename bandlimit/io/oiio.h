@@ -33,6 +33,13 @@ constexpr std::uint64_t saturating_product(std::uint64_t a, std::uint64_t b) {
     return b != 0 && a > largest / b ? largest : a * b;
 }
 
+/// Decoded bytes of the tiles that pass through OpenImageIO in one call: enough of them for many threads, and few
+/// enough that its copies do not matter.
+constexpr std::uint64_t bytes_at_once = 16 << 20;
+
+/// How many columns of a row of tiles that is, at least one tile. No end beyond the picture is looked at.
+int tile_columns_at_once(const OIIO::ImageSpec& spec);
+
 inline OIIO::TypeDesc type_of(Depth depth) {
     switch (depth) {
         case Depth::u8: return OIIO::TypeDesc::UINT8;
