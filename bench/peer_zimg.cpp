@@ -1,7 +1,7 @@
 // zimg works on planes. Its sources are split, and its targets joined, outside the timing.
 #include <zimg.h>
 
-#include <array>
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -113,14 +113,14 @@ zimg_image_format grey(int width, int height, std::size_t sample_bytes) {
     return format;
 }
 
-/// sRGB codes with straight alpha, or linear floats multiplied by alpha.
-zimg_image_format color(int width, int height, bool linear) {
+/// sRGB codes or linear floats.
+zimg_image_format color(int width, int height, bool linear, zimg_alpha_type_e alpha) {
     zimg_image_format format = grey(width, height, linear ? 4 : 1);
     format.color_family = ZIMG_COLOR_RGB;
     format.matrix_coefficients = ZIMG_MATRIX_RGB;
     format.color_primaries = ZIMG_PRIMARIES_BT709;
     format.transfer_characteristics = linear ? ZIMG_TRANSFER_LINEAR : ZIMG_TRANSFER_IEC_61966_2_1;
-    format.alpha = linear ? ZIMG_ALPHA_PREMULTIPLIED : ZIMG_ALPHA_STRAIGHT;
+    format.alpha = alpha;
     return format;
 }
 
@@ -223,13 +223,33 @@ Task planar(const Case& c, const Buffers& buffers, int threads) {
     });
 }
 
+/// A piece of a row from codes to linear floats or back. Alpha goes by itself: a graph for both would multiply colour
+/// by alpha before it decodes.
+class Converter {
+public:
+    Converter(int width, bool from_linear)
+        : color_(color(width, 1, from_linear, ZIMG_ALPHA_NONE), color(width, 1, !from_linear, ZIMG_ALPHA_NONE)),
+          alpha_(grey(width, 1, from_linear ? 4 : 1), grey(width, 1, from_linear ? 1 : 4)) {}
+
+    void run(const Planes& from, std::size_t from_row, std::size_t from_bytes, const Planes& to, std::size_t to_row,
+             std::size_t to_bytes) const {
+        color_.run(buffer_at<zimg_image_buffer_const>(from, 0, 3, from_row, from_bytes),
+                   buffer_at<zimg_image_buffer>(to, 0, 3, to_row, to_bytes));
+        alpha_.run(buffer_at<zimg_image_buffer_const>(from, 3, 4, from_row, from_bytes),
+                   buffer_at<zimg_image_buffer>(to, 3, 4, to_row, to_bytes));
+    }
+
+private:
+    Graph color_, alpha_;
+};
+
 /// Decoding, resizing and encoding in one go: zimg resizes rows that it asks for, and they are decoded when it does, so
 /// that no linear picture is ever in memory. One for each run of output rows.
 class LinearLight {
 public:
     LinearLight(const Case& c, int begin, int end)
         : first_(begin),
-          resize_(source_format(c, begin, end), color(c.new_width, end - begin, true)),
+          resize_(source_format(c, begin, end), color(c.new_width, end - begin, true, ZIMG_ALPHA_STRAIGHT)),
           in_mask_(zimg_select_buffer_mask(resize_.input_rows())),
           out_mask_(zimg_select_buffer_mask(resize_.output_rows())),
           in_(c.width, rows_of(in_mask_, c.height), 4, 4),
@@ -243,34 +263,40 @@ public:
 
 private:
     static zimg_image_format source_format(const Case& c, int begin, int end) {
-        zimg_image_format format = color(c.width, c.height, true);
+        zimg_image_format format = color(c.width, c.height, true, ZIMG_ALPHA_STRAIGHT);
         activate(format, begin, end, c.new_height);
         return format;
     }
     static int rows_of(unsigned mask, int all) { return mask == ZIMG_BUFFER_MAX ? all : static_cast<int>(mask) + 1; }
 
-    /// Row `y` of a whole picture of codes and of a ring of linear rows, from column `left` on.
+    /// Columns [left, right) widened to where vectors of codes are aligned; zimg asks for columns in tiles.
+    struct Columns {
+        Columns(unsigned left, unsigned right, int width)
+            : begin(left / alignment * alignment),
+              count(std::min((right + alignment - 1) / alignment * alignment, static_cast<std::size_t>(width)) -
+                    begin) {}
+        std::size_t begin, count;
+    };
+
     static int decode(void* user, unsigned y, unsigned left, unsigned right) {
         auto& self = *static_cast<LinearLight*>(user);
-        const Graph& graph = self.converter(self.decoders_, right - left, false);
-        graph.run(buffer_at<zimg_image_buffer_const>(*self.from_, 0, 4, y, left),
-                  buffer_at<zimg_image_buffer>(self.in_, 0, 4, y & self.in_mask_, std::size_t{left} * 4));
+        const Columns columns(left, right, self.in_.width);
+        converter(self.decoders_, columns.count, false)
+            .run(*self.from_, y, columns.begin, self.in_, y & self.in_mask_, columns.begin * sizeof(float));
         return 0;
     }
     static int encode(void* user, unsigned y, unsigned left, unsigned right) {
         auto& self = *static_cast<LinearLight*>(user);
-        const Graph& graph = self.converter(self.encoders_, right - left, true);
-        graph.run(buffer_at<zimg_image_buffer_const>(self.out_, 0, 4, y & self.out_mask_, std::size_t{left} * 4),
-                  buffer_at<zimg_image_buffer>(*self.to_, 0, 4, y + static_cast<unsigned>(self.first_), left));
+        const Columns columns(left, right, self.out_.width);
+        const auto row = static_cast<std::size_t>(self.first_) + y;
+        converter(self.encoders_, columns.count, true)
+            .run(self.out_, y & self.out_mask_, columns.begin * sizeof(float), *self.to_, row, columns.begin);
         return 0;
     }
-    using Converters = std::map<unsigned, Graph>;
+    using Converters = std::map<std::size_t, Converter>;
     /// Made when first needed, which is before the timing.
-    static const Graph& converter(Converters& made, unsigned width, bool from_linear) {
-        const auto found = made.find(width);
-        if (found != made.end()) return found->second;
-        const int w = static_cast<int>(width);
-        return made.emplace(width, Graph(color(w, 1, from_linear), color(w, 1, !from_linear))).first->second;
+    static const Converter& converter(Converters& made, std::size_t width, bool from_linear) {
+        return made.try_emplace(width, static_cast<int>(width), from_linear).first->second;
     }
 
     int first_;
