@@ -1,4 +1,5 @@
 // Programs in other languages: they hold their own buffers and use their own clock; bench/README.md has the protocol.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,12 +23,12 @@ class Child {
 public:
     explicit Child(const std::string& command) {
         std::array<int, 2> in{}, out{};
-        if (pipe(in.data()) || pipe(out.data())) fail("no pipe for: ", command);
+        // Closed in every other child, or none would see the end of its input.
+        if (pipe2(in.data(), O_CLOEXEC) || pipe2(out.data(), O_CLOEXEC)) fail("no pipe for: ", command);
         pid_ = fork();
         if (pid_ < 0) fail("no process for: ", command);
         if (pid_ == 0) {
             dup2(in[0], STDIN_FILENO), dup2(out[1], STDOUT_FILENO);
-            for (const int end : {in[0], in[1], out[0], out[1]}) close(end);
             execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
             _exit(127);
         }
