@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #include "bandlimit/core/parallel.h"
 
@@ -17,12 +20,14 @@ namespace bandlimit::bench {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Twelve chains hide the latency of the multiply-add on every processor that has two units for it.
+/// Twelve chains hide the latency of the multiply-add on every processor that has two units for it. They start apart:
+/// of chains that are equal the compiler would compute one.
 float MultiplyAdds(int rounds, float start) {
     const hn::ScalableTag<float> d;
     const auto factor = hn::Set(d, 0.5f), term = hn::Set(d, start);
-    auto a = term, b = term, c = term, e = term, f = term, g = term;
-    auto h = factor, i = factor, j = factor, k = factor, l = factor, m = factor;
+    const auto apart = [&](int i) { return hn::Set(d, start + static_cast<float>(i)); };
+    auto a = apart(1), b = apart(2), c = apart(3), e = apart(4), f = apart(5), g = apart(6);
+    auto h = apart(7), i = apart(8), j = apart(9), k = apart(10), l = apart(11), m = apart(12);
     for (int round = 0; round < rounds; ++round) {
         a = hn::MulAdd(a, factor, term), b = hn::MulAdd(b, factor, term), c = hn::MulAdd(c, factor, term);
         e = hn::MulAdd(e, factor, term), f = hn::MulAdd(f, factor, term), g = hn::MulAdd(g, factor, term);
@@ -87,6 +92,15 @@ void for_pieces(int threads, const std::function<void(std::ptrdiff_t i, std::ptr
     });
 }
 
+/// Seconds since the system started in which some thread waited for a core; 0 where Linux does not tell.
+double waiting_seconds() {
+    std::ifstream file("/proc/pressure/cpu");
+    std::string word;
+    while (file >> word)
+        if (word.starts_with("total=")) return 1e-6 * std::strtod(word.c_str() + 6, nullptr);
+    return 0;
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -139,7 +153,7 @@ double Clock::probe(int threads) {
 }
 
 bool Clock::quiet(const Sample& sample, int threads) const {
-    return sample.probe <= limits_.slow * best_probe(threads);
+    return sample.probe <= limits_.slow * best_probe(threads) && sample.waited <= limits_.waited;
 }
 
 std::vector<Sample> Clock::measure(const std::function<double(int k)>& run, const Buffers& buffers, int threads) {
@@ -149,11 +163,15 @@ std::vector<Sample> Clock::measure(const std::function<double(int k)>& run, cons
     for (int attempt = 0; attempt < limits_.attempts; ++attempt) {
         const int k = attempt % buffers.count(), other = (attempt + 1) % buffers.count();
         Sample sample;
+        const double waited = waiting_seconds();
+        const auto start = std::chrono::steady_clock::now();
         const double before = probe(threads);
         sample.floor = floor_seconds(buffers.sources[static_cast<std::size_t>(other)],
                                      buffers.targets[static_cast<std::size_t>(other)], threads);
         sample.seconds = run(k);
         sample.probe = std::max(before, probe(threads));
+        const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
+        sample.waited = (waiting_seconds() - waited) / all.count();
         samples.push_back(sample);
         spent += sample.seconds;
         const auto good =

@@ -41,15 +41,17 @@ struct Buffers {
 /// What was measured around one run.
 struct Sample {
     double seconds = 0, floor = 0;
-    double probe = 0;  ///< nanoseconds; the slower of before and after
+    double probe = 0;   ///< nanoseconds; the slower of before and after
+    double waited = 0;  ///< part of the time in which some thread of the machine waited for a core
 };
 
 /// When a sample counts, and when to stop.
 struct Limits {
-    int samples = 9;      ///< wanted from a quiet machine
-    int attempts = 27;    ///< after which busy samples are taken as they are
-    double slow = 1.15;   ///< a sample is busy when its probe takes longer than the best one by this factor
-    double seconds = 25;  ///< after which three samples must do
+    int samples = 9;       ///< wanted from a quiet machine
+    int attempts = 27;     ///< after which busy samples are taken as they are
+    double slow = 1.15;    ///< a sample is busy when its probe takes longer than the best one by this factor,
+    double waited = 0.05;  ///< or when there were more threads than cores for more than this part of the time
+    double seconds = 25;   ///< after which three samples must do
 };
 
 /// The median of the samples taken while the machine was quiet, or of all where fewer than half of `wanted` were.
