@@ -176,6 +176,7 @@ function(bandlimit_benchmarks)
     foreach(room IN LISTS rooms)
         file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*_bench.cpp)
         if(sources)
+            find_package(benchmark REQUIRED)
             get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
             add_executable(bench_${room} ${sources})
             set_target_properties(bench_${room} PROPERTIES
