@@ -8,6 +8,9 @@
 namespace bandlimit {
 namespace {
 
+/// Seconds: what hangs or eats the machine takes longer, even where the machine has other work.
+constexpr double quickly = 60;
+
 /// A small picture called `name`.
 void add_picture(const Shell& shell, const std::string& name = "in.png") {
     AnyImage image = noise(abilities_of(name).depths.front(), 40, 30, 3);
@@ -114,7 +117,7 @@ TEST(BadInput, HeadersThatClaimTheWorldAreRefusedQuickly) {
         write_bytes(shell / name, bytes);
         const Outcome run = shell("resize " + name + " out.png --size 8x8", little_memory);
         EXPECT_TRUE(fails(1, run, name));
-        EXPECT_LT(run.seconds, 10) << name;
+        EXPECT_LT(run.seconds, quickly) << name;
         EXPECT_EQ(shell.files(), std::set<std::string>{name});
         std::filesystem::remove(shell / name);
     }
@@ -130,7 +133,7 @@ TEST(BadInput, SizesBeyondTheMachineAreRefusedQuickly) {
           "pattern noise out.tif --size 1000000x1000000 --cutoff 0.1"}) {
         const Outcome run = shell(line);
         EXPECT_TRUE(fails(1, run, "memory")) << line;
-        EXPECT_LT(run.seconds, 10) << line;
+        EXPECT_LT(run.seconds, quickly) << line;
     }
     EXPECT_EQ(shell.files(), std::set<std::string>{"in.png"});
 }
