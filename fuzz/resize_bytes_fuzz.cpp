@@ -36,7 +36,8 @@ void check(Bytes bytes) {
     const auto banks = make_byte_banks(x, y);
     if (!banks || !has_byte_vectors()) return;
     const Image<std::uint8_t> src = any_image(bytes, width, height, channels);
-    Image<std::uint8_t> fast = any_image(bytes, new_width, new_height, channels), exact(new_width, new_height, channels);
+    Image<std::uint8_t> fast = any_image(bytes, new_width, new_height, channels),
+                        exact(new_width, new_height, channels);
     resize_bytes_scalar(*banks, src.view(), exact.view());
     const int cut = bytes.below(new_height + 1);
     const BytePlan plan = make_byte_plan(*banks);
