@@ -78,7 +78,6 @@ public:
             int first_target, int c, int count, Pixel pixel, const ByteStrip& strip)
         : plan_(plan),
           strip_(strip),
-          inside_{std::max(strip.read.begin, 0) & ~1, std::min(strip.read.end, src.width)},
           x_(*plan.banks.x.bank),
           y_(*plan.banks.y.bank),
           dst_(dst),
@@ -89,12 +88,13 @@ public:
           pixel_(pixel),
           lanes_(static_cast<std::size_t>(pixel)),
           block_(tile_rows(pixel)),
-          reader_(cropped(src, inside_.begin, 0, inside_.end - inside_.begin, src.height), c, count, pixel),
+          reader_(cropped(src, strip.stored.begin, 0, strip.stored.end - strip.stored.begin, src.height), c, count,
+                  pixel),
           padded_(whole_columns(reader_.bytes())),
-          left_(std::max(0, -(strip.read.begin >> 1))) {
+          left_(std::max(0, strip.stored.begin / 2 - (strip.read.begin >> 1))) {
         const std::size_t pairs =
             static_cast<std::size_t>(left_) + padded_ / lanes_ / 2 +
-            static_cast<std::size_t>(std::max(0, strip.read.end - x_.inputs) / 2 + plan.pairs.count);
+            static_cast<std::size_t>(std::max(0, strip.read.end - strip.stored.end) / 2 + 1 + plan.pairs.count);
         tile_.resize(pairs * tile_pair);
         if (pixel == Pixel::one) middle_.resize(2 * pairs * static_cast<std::size_t>(block_));
         pitch_ = 2 * pairs;
@@ -183,7 +183,7 @@ private:
     }
     std::int16_t* tile() { return tile_.data() + static_cast<std::size_t>(left_) * tile_pair; }
     std::ptrdiff_t place(int x, int c) const {
-        const int v = x - inside_.begin;
+        const int v = x - strip_.stored.begin;
         return pixel_ == Pixel::one ? v : (v >> 1) * static_cast<std::ptrdiff_t>(tile_pair) + 2 * c + (v & 1);
     }
 
@@ -193,8 +193,8 @@ private:
             const int from = resolve(v, x_.inputs, x_.edge);
             for (int c = 0; c < static_cast<int>(lanes_); ++c) samples[place(v, c)] = samples[place(from, c)];
         };
-        for (int v = strip_.read.begin; v < 0; ++v) fill(v);
-        for (int v = x_.inputs; v < strip_.read.end; ++v) fill(v);
+        for (int v = strip_.read.begin; v < std::min(0, strip_.read.end); ++v) fill(v);
+        for (int v = std::max(x_.inputs, strip_.read.begin); v < strip_.read.end; ++v) fill(v);
     }
 
     void filter_x(int first, int last) {
@@ -207,7 +207,7 @@ private:
             const auto r = static_cast<std::size_t>(i - first);
             rows[r] = out_.empty() ? &dst_(strip_.first, i - first_target_, c_) : out_.data() + r * length;
         }
-        const std::ptrdiff_t first_pair = inside_.begin / 2;
+        const std::ptrdiff_t first_pair = strip_.stored.begin / 2;
         combine_byte_pairs(plan_.pairs, strip_.first, strip_.last,
                            tile() - first_pair * static_cast<std::ptrdiff_t>(tile_pair), pixel_, rows.data());
         if (out_.empty()) return;
@@ -227,7 +227,6 @@ private:
 
     const BytePlan& plan_;
     const ByteStrip& strip_;
-    IndexRange inside_;  ///< the source columns of the strip that exist, from an even one on
     const Bank &x_, &y_;
     View<std::uint8_t> dst_;
     int first_source_, first_target_, c_, count_;
@@ -247,6 +246,19 @@ private:
     std::vector<const std::uint8_t*> lines_, ahead_;
 };
 
+IndexRange stored_columns(const Bank& x, IndexRange read) {
+    IndexRange stored{x.inputs, 0};
+    const auto include = [&](int v) {
+        const int at = resolve(v, x.inputs, x.edge);
+        stored = {std::min(stored.begin, at), std::max(stored.end, at + 1)};
+    };
+    for (int v = read.begin; v < std::min(0, read.end); ++v) include(v);
+    for (int v = std::max(x.inputs, read.begin); v < read.end; ++v) include(v);
+    const int begin = std::max(0, read.begin), end = std::min(x.inputs, read.end);
+    if (begin < end) stored = {std::min(stored.begin, begin), std::max(stored.end, end)};
+    return {stored.begin & ~1, stored.end};
+}
+
 /// Strips whose source rows, as many as a block of output rows reads, fit the second cache.
 std::vector<ByteStrip> make_strips(const Bank& x, const Bank& y, Pixel pixel) {
     const auto ratio = [](const Bank& bank) { return static_cast<double>(bank.inputs) / bank.output_count(); };
@@ -262,7 +274,8 @@ std::vector<ByteStrip> make_strips(const Bank& x, const Bank& y, Pixel pixel) {
     std::vector<ByteStrip> strips;
     for (int first = 0; first < x.output_count(); first += std::min(outputs, x.output_count() - first)) {
         const int last = first + std::min(outputs, x.output_count() - first);
-        strips.push_back({first, last, indices_read(x, first, last)});
+        const IndexRange read = indices_read(x, first, last);
+        strips.push_back({first, last, read, stored_columns(x, read)});
     }
     return strips;
 }

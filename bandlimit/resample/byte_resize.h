@@ -14,7 +14,8 @@ namespace bandlimit {
 /// in the second cache, however wide the image is.
 struct ByteStrip {
     int first = 0, last = 0;
-    IndexRange read;  ///< the source columns read; may reach outside the image
+    IndexRange read;    ///< the source columns read; may reach outside the image
+    IndexRange stored;  ///< those that exist, and those that others outside resolve to, from an even one on
 };
 
 /// What resize_bytes() needs to know about a pair of banks.

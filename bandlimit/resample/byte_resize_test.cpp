@@ -56,7 +56,11 @@ TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
         const Kernel kernel = kernels()[static_cast<std::size_t>(run) % kernels().size()];
         const Edge edge = all_edges()[static_cast<std::size_t>(run / 7) % all_edges().size()];
         const auto layout = [&] { return random.integer(0, 2) == 0 ? Layout::planar : Layout::interleaved; };
-        const Axis to_x{new_width, run % 4 == 0 ? 1.0 : 0.0, run % 4 == 0 ? 0.0 : 1.0};
+        // The same interval, flipped, or what lies beside the picture.
+        const Axis places[] = {{new_width, 1, 0},   {new_width, 0, 1},      {new_width, 0, 1},  {new_width, 0, 1},
+                               {new_width, 1.2, 2}, {new_width, -0.3, 0.5}, {new_width, -3, -1}};
+        const bool reads_outside = edge != Edge::zero && edge != Edge::renormalize;
+        const Axis to_x = places[run % (reads_outside ? 7 : 4)];
         const Bank x = make_bank(kernel, {width}, to_x, edge);
         const Bank y = make_bank(kernel, {height}, {new_height, 0, run % 5 ? 1 : 0.7}, edge);
         const auto banks = make_byte_banks(x, y);

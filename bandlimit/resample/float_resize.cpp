@@ -54,8 +54,8 @@ public:
           channels_(static_cast<std::size_t>(plan.channels)),
           width_(strip.read.end - strip.read.begin),
           outputs_(strip.outputs()),
-          inside_{std::max(strip.read.begin, 0), std::min(strip.read.end, plan.src.x.count)},
-          columns_(columns_of(source.samples, inside_.begin, inside_.end - inside_.begin)),
+          inside_(part_inside(strip.read, plan.src.x.count)),
+          columns_(columns_of(source.samples, is_outside() ? 0 : inside_.begin, inside_.end - inside_.begin)),
           targets_(columns_of(target.samples, strip.first(), outputs_)),
           block_(rows_of_block(plan.channels)),
           out_(block_, length(outputs_)) {
@@ -87,6 +87,13 @@ public:
     }
 
 private:
+    /// The part of `read` that exists; empty, within `read`, where nothing does.
+    static IndexRange part_inside(IndexRange read, int count) {
+        const int begin = std::clamp(0, read.begin, read.end);
+        return {begin, std::clamp(count, begin, read.end)};
+    }
+    bool is_outside() const { return inside_.begin >= inside_.end; }
+
     std::size_t length(int width) const { return static_cast<std::size_t>(width) * channels_; }
     float antiring() const { return static_cast<float>(plan_.options.antiring); }
     bool premultiplied() const { return plan_.options.premultiply || source_.encoding.associated; }
@@ -183,7 +190,7 @@ private:
         const int y = resolve(v, plan_.src.y.count, plan_.options.edge);
         if (y < 0) return static_cast<void>(std::fill_n(row, length(width_), 0.0f));
         float* const inside = row + length(inside_.begin - strip_.read.begin);
-        decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
+        if (!is_outside()) decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
         for (int x = strip_.read.begin; x < inside_.begin; ++x) load_outside(x, y, row);
         for (int x = inside_.end; x < strip_.read.end; ++x) load_outside(x, y, row);
     }

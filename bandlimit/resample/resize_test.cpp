@@ -12,6 +12,7 @@
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/math/random.h"
+#include "bandlimit/resample/apply.h"
 #include "bandlimit/resample/combine.h"
 #include "bandlimit/resample/naive_test.h"
 #include "bandlimit/resample/operator_checker_test.h"
@@ -174,6 +175,22 @@ TEST(Resizer, BlocksOfRowsGiveTheBitsOfTheWhole) {
                 }
                 expect_same<float>(blocks.view(), whole.view(), message(name_of(edge), ' ', width, ' ', height));
             }
+}
+
+TEST(Resizer, BesideTheImageItReadsWhatTheEdgeSays) {
+    const Image<float> src = noise(50, 40, 3, 6);
+    for (const Edge edge : {Edge::clamp, Edge::reflect, Edge::wrap})
+        for (const Axis& place : {Axis{30, 60, 90}, {30, -40, -10}, {30, -10, 20}, {30, 45, 130}}) {
+            const Bank x = make_bank(lanczos(3), {50, 0, 50}, place, edge);
+            const Bank y = make_bank(lanczos(3), {40, 0, 40}, {20, 0, 40}, edge);
+            Image<float> middle(50, 20, 3), expected(30, 20, 3), found(30, 20, 3);
+            apply_scalar(y, transposed(View<const float>(src.view())), transposed(middle.view()));
+            apply_scalar(x, middle.view(), expected.view());
+            Resizer({{50, 0, 50}, {40, 0, 40}}, {place, {20, 0, 40}}, 3, {.reconstruction = lanczos(3), .edge = edge})
+                .run({src.view(), 0, {}}, {found.view(), 0, {}, {}});
+            for (int i = 0; i < 30 * 20 * 3; ++i)
+                ASSERT_NEAR(found.view().data[i], expected.view().data[i], 1e-5) << name_of(edge) << ' ' << place.begin;
+        }
 }
 
 TEST(Resizer, PartsOfWideImagesGiveTheBitsOfTheWhole) {
