@@ -8,6 +8,7 @@
 
 #include "bandlimit/color/half.h"
 #include "bandlimit/color/srgb_codes.h"
+#include "bandlimit/core/transpose4-inl.h"
 
 #if defined(BANDLIMIT_COLOR_ENCODING_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BANDLIMIT_COLOR_ENCODING_PLANES_INL_H
@@ -81,20 +82,6 @@ HWY_INLINE hn::Vec<RawTag<T>> Narrow(Lanes<T> lanes) {
 
 // ---- Four channels: a 4 x 4 transposition within each 128-bit block turns four vectors of pixels into four planes,
 // and back. It leaves pixel k * kLanes / 4 + j in lane 4 j + k; whatever holds pixels in their order is permuted alike.
-
-template <class V>
-HWY_INLINE void Transpose4(V (&v)[4]) {
-    const hn::DFromV<V> d;
-    const hn::Repartition<double, decltype(d)> d64;
-    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, v[0], v[1]));
-    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, v[0], v[1]));
-    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, v[2], v[3]));
-    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, v[2], v[3]));
-    v[0] = hn::BitCast(d, hn::InterleaveLower(d64, low01, low23));
-    v[1] = hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23));
-    v[2] = hn::BitCast(d, hn::InterleaveLower(d64, high01, high23));
-    v[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
-}
 
 /// From the order of pixels to that of the lanes of planes, and back.
 struct Order {

@@ -28,6 +28,8 @@ void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, Pixel, 
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
+#include "bandlimit/core/transpose4-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
@@ -316,7 +318,7 @@ constexpr std::size_t kTileVectors = 2 * tile_pair / kBytes;  // of which two ru
 constexpr std::size_t kPart = kBytes / 2;                     // samples of a vector
 
 /// The sums of one output for two vectors of rows.
-struct PairSums2 {
+struct OutputSums {
     V32 a, b;
 
     HWY_INLINE void Start() { a = b = hn::Set(d32, 1 << (kPairShift - 1)); }
@@ -327,7 +329,7 @@ struct PairSums2 {
     }
 };
 struct FourSums {
-    PairSums2 o0, o1, o2, o3;
+    OutputSums o0, o1, o2, o3;
 
     HWY_INLINE void Start() {
         o0.Start();
@@ -337,7 +339,7 @@ struct FourSums {
 
 /// One output: kPairs pairs, or pairs.count for 0.
 template <int kPairs>
-HWY_INLINE void SumOne(const BytePairs& pairs, int i, const std::int16_t* tile, PairSums2& sums) {
+HWY_INLINE void SumOne(const BytePairs& pairs, int i, const std::int16_t* tile, OutputSums& sums) {
     const int count = kPairs ? kPairs : pairs.count;
     const BytePairs::Output& at = pairs.outputs[static_cast<std::size_t>(i)];
     const std::int32_t* const weights = pairs.weights.data() + at.offset;
@@ -391,19 +393,6 @@ HWY_INLINE V8 PackFour(V32 o0, V32 o1, V32 o2, V32 o3) {
                      Pack(hn::ShiftRight<kPairShift>(o2), hn::ShiftRight<kPairShift>(o3)));
 }
 
-/// Swaps rows and columns of the 4 x 4 lanes of each block.
-HWY_INLINE void TransposeBlocks(V32* v) {
-    const hn::ScalableTag<std::int64_t> d64;
-    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d32, v[0], v[1]));
-    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d32, v[2], v[3]));
-    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d32, v[0], v[1]));
-    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d32, v[2], v[3]));
-    v[0] = hn::BitCast(d32, hn::InterleaveLower(d64, low01, low23));
-    v[1] = hn::BitCast(d32, hn::InterleaveUpper(d64, low01, low23));
-    v[2] = hn::BitCast(d32, hn::InterleaveLower(d64, high01, high23));
-    v[3] = hn::BitCast(d32, hn::InterleaveUpper(d64, high01, high23));
-}
-
 /// Outputs [begin, end) of two vectors of rows.
 template <int kPairs>
 class PairRun {
@@ -437,7 +426,7 @@ public:
             }
             const std::size_t wanted = static_cast<std::size_t>(std::min(16, end_ - i));
             for (std::size_t u = 0; u < 2; ++u) {
-                TransposeBlocks(lanes[u]);
+                Transpose4(lanes[u]);
                 for (std::size_t r = 0; r < 4; ++r)
                     StoreBlocks(hn::BitCast(d8, lanes[u][r]), rows_ + u * kBytes / 4 + r, 4,
                                 static_cast<std::size_t>(i - begin_), wanted);

@@ -66,7 +66,7 @@ struct ResizePlan;
 /// memory   per thread about 2 MiB, more where one output reads more: images are worked on in strips of columns
 /// error    as combine(), once per axis; u8 and u16 are the nearest codes of the float result. In integers: at most one
 ///          code from them; 1 code in 200 differs (resize_bytes_scalar() has the definition)
-/// cost     of 4 bytes per pixel to half by 12 taps, about 1.7 times that of reading and writing memory; in linear
+/// cost     of 4 bytes per pixel to half by 12 taps, about 1.8 times that of reading and writing memory; in linear
 ///          light 8 times. docs/performance.md has the table
 class Resizer {
 public:

@@ -25,6 +25,8 @@ void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int wid
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
+#include "bandlimit/core/transpose4-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
@@ -37,40 +39,28 @@ HWY_INLINE void TransposeBlock(const float*, std::ptrdiff_t, float*, std::ptrdif
 constexpr int kBlock = 4;
 HWY_INLINE void TransposeBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
     const hn::Full128<float> d;
-    const hn::Full128<double> pairs;
-    const auto r0 = hn::LoadU(d, rows), r1 = hn::LoadU(d, rows + pitch);
-    const auto r2 = hn::LoadU(d, rows + 2 * pitch), r3 = hn::LoadU(d, rows + 3 * pitch);
-    const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
-    const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
-    const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
-    const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
-    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)), d, lanes);
-    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)), d, lanes + stride);
-    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)), d, lanes + 2 * stride);
-    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23)), d, lanes + 3 * stride);
+    hn::Vec<decltype(d)> v[4] = {hn::LoadU(d, rows), hn::LoadU(d, rows + pitch), hn::LoadU(d, rows + 2 * pitch),
+                                 hn::LoadU(d, rows + 3 * pitch)};
+    Transpose4(v);
+    for (int i = 0; i < 4; ++i) hn::StoreU(v[i], d, lanes + i * stride);
 }
 #endif
 
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
 /// Block b of row k of a tall block of 16 x 4 samples comes from row 4 * b + k.
 constexpr int kTall = 16;
-HWY_INLINE __m512 LoadBlocks(const float* from, std::ptrdiff_t step) {
+HWY_INLINE auto LoadBlocks(const float* from, std::ptrdiff_t step) {
     __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(from));
     v = _mm512_insertf32x4(v, _mm_loadu_ps(from + step), 1);
     v = _mm512_insertf32x4(v, _mm_loadu_ps(from + 2 * step), 2);
-    return _mm512_insertf32x4(v, _mm_loadu_ps(from + 3 * step), 3);
+    return hn::Vec<hn::ScalableTag<float>>{_mm512_insertf32x4(v, _mm_loadu_ps(from + 3 * step), 3)};
 }
 HWY_INLINE void TransposeTallBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
-    const __m512 r0 = LoadBlocks(rows, 4 * pitch), r1 = LoadBlocks(rows + pitch, 4 * pitch);
-    const __m512 r2 = LoadBlocks(rows + 2 * pitch, 4 * pitch), r3 = LoadBlocks(rows + 3 * pitch, 4 * pitch);
-    const __m512d low01 = _mm512_castps_pd(_mm512_unpacklo_ps(r0, r1));
-    const __m512d low23 = _mm512_castps_pd(_mm512_unpacklo_ps(r2, r3));
-    const __m512d high01 = _mm512_castps_pd(_mm512_unpackhi_ps(r0, r1));
-    const __m512d high23 = _mm512_castps_pd(_mm512_unpackhi_ps(r2, r3));
-    _mm512_storeu_ps(lanes, _mm512_castpd_ps(_mm512_unpacklo_pd(low01, low23)));
-    _mm512_storeu_ps(lanes + stride, _mm512_castpd_ps(_mm512_unpackhi_pd(low01, low23)));
-    _mm512_storeu_ps(lanes + 2 * stride, _mm512_castpd_ps(_mm512_unpacklo_pd(high01, high23)));
-    _mm512_storeu_ps(lanes + 3 * stride, _mm512_castpd_ps(_mm512_unpackhi_pd(high01, high23)));
+    const hn::ScalableTag<float> d;
+    hn::Vec<decltype(d)> v[4] = {LoadBlocks(rows, 4 * pitch), LoadBlocks(rows + pitch, 4 * pitch),
+                                 LoadBlocks(rows + 2 * pitch, 4 * pitch), LoadBlocks(rows + 3 * pitch, 4 * pitch)};
+    Transpose4(v);
+    for (int i = 0; i < 4; ++i) hn::StoreU(v[i], d, lanes + i * stride);
 }
 #else
 constexpr int kTall = kBlock;
