@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "bandlimit/io/file_error.h"
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/io/image_file.h"
 
 namespace bandlimit {

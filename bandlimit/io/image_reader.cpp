@@ -8,8 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/core/image.h"
-#include "bandlimit/io/file_error.h"
 #include "bandlimit/io/oiio.h"
 #include "bandlimit/io/orientation.h"
 #include "bandlimit/io/packed.h"

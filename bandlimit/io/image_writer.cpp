@@ -7,8 +7,8 @@
 
 #include <OpenImageIO/filesystem.h>
 
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
-#include "bandlimit/io/file_error.h"
 #include "bandlimit/io/oiio.h"
 #include "bandlimit/io/packed.h"
 #include "bandlimit/io/pnm.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "bandlimit/io/file_error.h"
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/io/image_file.h"
 
 namespace bandlimit {

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "bandlimit/io/file_error.h"
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/io/oiio.h"
 
 namespace bandlimit {

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
-#include "bandlimit/io/file_error.h"
 
 namespace bandlimit {
 namespace {

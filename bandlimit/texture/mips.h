@@ -1,0 +1,85 @@
+// Mip chains that know what their texels mean.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "bandlimit/core/parallel.h"
+#include "bandlimit/resample/resize.h"
+#include "bandlimit/texture/texture.h"
+
+namespace bandlimit {
+
+/// What the samples of a texture stand for. It decides what their mean is.
+enum class Role {
+    color,         ///< light in sRGB codes (floats: linear), weighted by alpha
+    color_linear,  ///< light in linear codes, weighted by alpha
+    normal,        ///< unit vectors, (n + 1) / 2: filtered, then made unit again; two channels hold x and y
+    roughness,     ///< perceptual roughness; grows by the variance of normals that a level loses
+    height,        ///< any quantity, each channel by itself
+    mask,          ///< shares of 0 to 1, each channel by itself
+    alpha_tested,  ///< color, whose alpha is compared with a threshold: the share that passes is kept
+    data           ///< any quantity, each channel by itself, alpha too
+};
+std::span<const Role> all_roles();
+/// "color", "color-linear", "alpha-tested", ... Throws Error, listing them, for any other name.
+Role parse_role(std::string_view name);
+std::string_view name_of(Role role);
+
+/// What the name of a file says about its role: "wall_n.png" is a normal map. `because` is the part of the name that
+/// decided, empty where nothing did and the role is color.
+struct RoleGuess {
+    Role role = Role::color;
+    std::string because;
+};
+RoleGuess guess_role(std::string_view path);
+
+/// A bilinear read of the source, at an offset in source texels from the position of the output.
+struct Fetch {
+    double x = 0, y = 0, weight = 0;
+};
+/// A filter that halves, as shaders run it: a sum of bilinear reads. Between texels of uneven sizes the offsets are
+/// stretched by the ratio of the pitches to 2.
+using Fetches = std::vector<Fetch>;
+/// Wronski's eight reads (2022, "Fast, GPU friendly, antialiasing downsampling filter").
+Fetches downsample8();
+
+/// What makes the weights of a level.
+using MipFilter = std::variant<Auto, Kernel, Taps, Fetches>;
+
+enum class MipSource {
+    base,     ///< every level from level 0
+    previous  ///< every level from the one above, before that was rounded to codes
+};
+
+struct MipOptions {
+    Role role = Role::color;
+    MipFilter filter = Auto{};
+    MipSource from = MipSource::previous;
+    Edge edge_x = Edge::renormalize, edge_y = Edge::renormalize;
+    int levels = 0;                ///< how many to make, level 0 included; 0: all, down to 1 x 1
+    double alpha_threshold = 0.5;  ///< of alpha_tested: what is not below passes, 0 < threshold <= 1
+    /// Of roughness: the normal map of the same surface, as Role::normal reads it, of any size. None: roughness alone.
+    std::optional<AnyConstView> normals;
+};
+
+/// The mip chain of one picture: images[0] is the picture itself, in the target's format.
+///
+/// shapes   base [w x h x c]; c fits the target, or grows to it: grey to RGB, opaque alpha, no alpha in two channels
+struct MipChain {
+    std::vector<AnyImage> images;
+    bool lost_non_finite = false;  ///< a value that is not finite was stored as the code 0
+};
+MipChain make_mips(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
+                   const MipOptions& options = {}, Parallel parallel = {});
+
+/// The mip chain of six square faces of a cube, filtered across their edges.
+///
+/// returns  chains in the order of `faces`: +x -x +y -y +z -z, oriented as Direct3D, OpenGL and Vulkan have them
+std::vector<MipChain> make_cube_mips(std::span<const AnyConstView> faces, const Encoding& stored,
+                                     const TexelFormat& target, const MipOptions& options = {}, Parallel parallel = {});
+
+}  // namespace bandlimit
