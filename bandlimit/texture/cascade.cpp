@@ -1,0 +1,90 @@
+#include "bandlimit/texture/cascade.h"
+
+#include <algorithm>
+
+#include "bandlimit/texture/texture.h"
+
+namespace bandlimit {
+namespace {
+
+constexpr int rows_per_thread = 96;  // of a block; the rows above it are decoded twice, and it shall stay in cache
+
+}  // namespace
+
+MipCascade::MipCascade(int width, int height, int channels, const Encoding& stored, int levels,
+                       const ResizeOptions& options, Parallel parallel)
+    : stored_(stored),
+      between_{Transfer::linear, stored.alpha, stored.associated || options.premultiply},
+      parallel_(parallel),
+      block_(rows_per_thread * parallel.count()) {
+    if (width < 1 || height < 1 || levels < 1 || levels > mip_count(width, height))
+        fail("MipCascade: ", levels, " levels of ", width, " x ", height, "; pass a size of at least 1 x 1 and 1 to ",
+             mip_count(std::max(width, 1), std::max(height, 1)), " levels");
+    for (int level = 1; level < levels; ++level) {
+        const Grid above{{mip_length(width, level - 1)}, {mip_length(height, level - 1)}};
+        const Grid grid{{mip_length(width, level)}, {mip_length(height, level)}};
+        steps_.push_back({Resizer(above, grid, channels, options), grid.x.count, grid.y.count});
+    }
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        Step& step = steps_[i];
+        const int kept = i + 1 < steps_.size() ? largest_need(steps_[i + 1]) : 0;
+        const int rows = std::min(step.height, kept + std::min(step.height, block_));
+        step.window = Image<float>(step.width, rows, channels, Layout::interleaved);
+    }
+}
+
+int MipCascade::block_end(const Step& step) const { return std::min(step.done + block_, step.height); }
+
+/// The rows of the level above that the next block of level i + 1 reads. Under Edge::wrap its last rows read the first
+/// ones, which must stay.
+IndexRange MipCascade::needed(std::size_t i) const {
+    const Step& step = steps_[i];
+    const IndexRange next = step.resizer.rows_needed(step.done, block_end(step));
+    const IndexRange last = step.resizer.rows_needed(step.height - 1, step.height);
+    return {std::min(next.begin, last.begin), next.end};
+}
+
+/// How many rows of the level above a block of `step` needs at most.
+int MipCascade::largest_need(const Step& step) const {
+    int largest = 0;
+    for (int first = 0; first < step.height; first += block_) {
+        const IndexRange range = step.resizer.rows_needed(first, std::min(first + block_, step.height));
+        largest = std::max(largest, range.end - range.begin);
+    }
+    return largest;
+}
+
+/// Forgets the rows of a level that the next one no longer reads.
+void MipCascade::drop_rows(std::size_t i) {
+    Step& step = steps_[i];
+    const bool is_read = i + 1 < steps_.size() && steps_[i + 1].done < steps_[i + 1].height;
+    const int first = is_read ? std::min(needed(i + 1).begin, step.done) : step.done;
+    if (first == step.kept) return;
+    const View<float> v = step.window.view();
+    std::copy(&v(0, 0) + (first - step.kept) * v.dy, &v(0, 0) + (step.done - step.kept) * v.dy, &v(0, 0));
+    step.kept = first;
+}
+
+void MipCascade::make_block(std::size_t i, const SourceRows& source, const Sink& sink) {
+    drop_rows(i);
+    Step& step = steps_[i];
+    const int end = block_end(step);
+    const View<float> rows = cropped(step.window.view(), 0, step.done - step.kept, step.width, end - step.done);
+    step.resizer.run(source, {rows, step.done, between_, {}}, parallel_);
+    sink(static_cast<int>(i) + 1, step.done, rows);
+    step.done = end;
+}
+
+void MipCascade::advance(const AnyConstView& rows, int first, const Sink& sink) {
+    if (is_done()) fail("MipCascade::advance: all rows are made; ask is_done() before");
+    make_block(0, {rows, first, stored_}, sink);
+    for (std::size_t i = 1; i < steps_.size(); ++i) {
+        const Step& above = steps_[i - 1];
+        while (steps_[i].done < steps_[i].height && needed(i).end <= above.done) {
+            const View<const float> window = above.window.view();
+            make_block(i, {cropped(window, 0, 0, above.width, above.done - above.kept), above.kept, between_}, sink);
+        }
+    }
+}
+
+}  // namespace bandlimit
