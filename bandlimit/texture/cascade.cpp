@@ -75,16 +75,20 @@ void MipCascade::make_block(std::size_t i, const SourceRows& source, const Sink&
     step.done = end;
 }
 
+/// Makes a block of level i + 1, and what that allows of the levels below it, before it gets rows again.
+void MipCascade::descend(std::size_t i, const SourceRows& source, const Sink& sink) {
+    make_block(i, source, sink);
+    const std::size_t below = i + 1;
+    const Step& step = steps_[i];
+    while (below < steps_.size() && steps_[below].done < steps_[below].height && needed(below).end <= step.done) {
+        const View<const float> window = step.window.view();
+        descend(below, {cropped(window, 0, 0, step.width, step.done - step.kept), step.kept, between_}, sink);
+    }
+}
+
 void MipCascade::advance(const AnyConstView& rows, int first, const Sink& sink) {
     if (is_done()) fail("MipCascade::advance: all rows are made; ask is_done() before");
-    make_block(0, {rows, first, stored_}, sink);
-    for (std::size_t i = 1; i < steps_.size(); ++i) {
-        const Step& above = steps_[i - 1];
-        while (steps_[i].done < steps_[i].height && needed(i).end <= above.done) {
-            const View<const float> window = above.window.view();
-            make_block(i, {cropped(window, 0, 0, above.width, above.done - above.kept), above.kept, between_}, sink);
-        }
-    }
+    descend(0, {rows, first, stored_}, sink);
 }
 
 }  // namespace bandlimit

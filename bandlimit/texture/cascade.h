@@ -48,6 +48,7 @@ private:
     IndexRange needed(std::size_t i) const;
     int largest_need(const Step& step) const;
     void make_block(std::size_t i, const SourceRows& source, const Sink& sink);
+    void descend(std::size_t i, const SourceRows& source, const Sink& sink);
     void drop_rows(std::size_t i);
 
     Encoding stored_, between_;

@@ -78,7 +78,7 @@ TEST(MipCascade, HasTheBitsOfWholeLevelsOneAfterAnother) {
     struct Size {
         int width, height;
     };
-    for (const Size size : {Size{64, 1000}, {33, 777}, {1, 300}, {300, 1}, {5, 3}, {1, 1}})
+    for (const Size size : {Size{64, 1000}, {33, 777}, {4, 4096}, {3, 5000}, {1, 300}, {300, 1}, {5, 3}, {1, 1}})
         for (const Edge edge : {Edge::renormalize, Edge::wrap})
             for (const int threads : {1, 3}) {
                 const Image<std::uint8_t> base = codes(size.width, size.height, 4);
