@@ -100,6 +100,19 @@ TEST(Container, EveryTruncationIsRefused) {
         }
 }
 
+TEST(Container, TheBeginningIsEnoughForTheHeader) {
+    for (const Container container : containers) {
+        const FileContent file = written(noise_texture({2, Depth::u16}, {40, 30, 3}), container);
+        const std::span<const std::byte> start = std::span(file).first(500);
+        const ContainerInfo info = container_info(start, file.size(), "t");
+        EXPECT_EQ(info.width, 40);
+        EXPECT_EQ(info.levels, 3);
+        EXPECT_EQ(info.texel_bytes, 4);
+        EXPECT_THROW(container_info(start, file.size() - 1, "t"), std::runtime_error);
+        EXPECT_THROW(container_info(start.first(100), file.size(), "t"), std::runtime_error);
+    }
+}
+
 TEST(Container, TrailingBytesDoNoHarm) {
     const Texture texture = noise_texture({}, {5, 3, 2});
     for (const Container container : containers) {

@@ -252,6 +252,12 @@ TEST(Ktx2, WhatIsNotReadIsNamed) {
     EXPECT_TRUE(is_refused(patched(file, 88, 59), "must be 60"));
 }
 
+TEST(Ktx2, KeysBeyondTheHeaderAreRefused) {
+    FileContent file = ktx2({4, Depth::u8}, {});
+    file.resize(most_header_bytes + 100);
+    EXPECT_TRUE(is_refused(patched(patched(file, 56, most_header_bytes), 60, 8), "1048576"));
+}
+
 TEST(Ktx2, SizesWhoseProductOverflowsAreRefused) {
     // 2^31 - 1 squared times 4 bytes times 6 faces times 16384 layers is far beyond 64 bits.
     FileContent file = ktx2({4, Depth::u8}, {4, 4, 1, true, 1});
