@@ -21,10 +21,10 @@ bool ends_with_any_case(std::string_view path, std::string_view extension) {
                       [&](char a, char b) { return a == lower(b); });
 }
 
-ContainerLayout layout_of(std::span<const std::byte> bytes, const std::string& name) {
-    const std::optional<Container> container = container_of_bytes(bytes);
+ContainerLayout layout_of(std::span<const std::byte> start, std::uint64_t length, const std::string& name) {
+    const std::optional<Container> container = container_of_bytes(start);
     if (!container) fail_file(name, "is neither KTX2 nor DDS; name a file of one of these");
-    const FileBytes file{bytes, name};
+    const FileBytes file{start, length, name};
     return *container == Container::ktx2 ? ktx2_layout(file) : dds_layout(file);
 }
 
@@ -50,12 +50,16 @@ void check_container(Container container, const TexelFormat& format) {
          "; it has 1, 2 or 4 of any depth, and sRGB in ", container == Container::ktx2 ? "u8" : "4 channels of u8");
 }
 
-ContainerInfo container_info(std::span<const std::byte> bytes, const std::string& name) {
-    return layout_of(bytes, name).info;
+ContainerInfo container_info(std::span<const std::byte> start, std::uint64_t length, const std::string& name) {
+    return layout_of(start, length, name).info;
 }
 
-Texture read_container(std::span<const std::byte> bytes, const std::string& name) {
-    return read_images(bytes, layout_of(bytes, name));
+ContainerInfo container_info(std::span<const std::byte> file, const std::string& name) {
+    return container_info(file, file.size(), name);
+}
+
+Texture read_container(std::span<const std::byte> file, const std::string& name) {
+    return read_images(file, layout_of(file, file.size(), name));
 }
 
 void write_container(const Texture& texture, Container container, const ByteSink& sink) {

@@ -20,8 +20,9 @@ std::optional<Container> container_of_bytes(std::span<const std::byte> bytes);
 /// What a header says, before any texel is read.
 struct ContainerInfo {
     Container container;
-    std::string format;  ///< the interface's own name: "VK_FORMAT_R8G8B8A8_SRGB", "DXGI_FORMAT_R8G8B8A8_UNORM_SRGB"
-    TexelFormat texels;
+    std::string format;   ///< the interface's own name: "VK_FORMAT_R8G8B8A8_SRGB", "DXGI_FORMAT_R8G8B8A8_UNORM_SRGB"
+    TexelFormat texels;   ///< as they are read
+    int texel_bytes = 0;  ///< as they are stored
     int width = 0, height = 0, levels = 1, layers = 1;
     bool is_cube = false, is_array = false;
 };
@@ -30,19 +31,24 @@ struct ContainerInfo {
 /// channels.
 void check_container(Container container, const TexelFormat& format);
 
-/// Reads the header of a file whose bytes are all in `bytes`, and checks that it holds what it claims.
+/// How much of the beginning of a file holds its header; what lies further back is texels.
+inline constexpr std::uint64_t most_header_bytes = 1 << 20;
+
+/// Reads the header of a file, and checks that the file is long enough for what it claims.
 ///
-/// `name` is what errors call the file.
+/// shapes   start: the first most_header_bytes of the file, or the whole; length of the file in bytes
 /// range    uncompressed texels of 8 and 16 bits, halves and floats, as ktx2_layout() and dds_layout() list them
 /// throws   std::runtime_error "NAME: what is wrong; what to do" for what is damaged, truncated, or of a kind that is
 ///          not read (compressed formats, volumes)
-ContainerInfo container_info(std::span<const std::byte> bytes, const std::string& name);
+ContainerInfo container_info(std::span<const std::byte> start, std::uint64_t length, const std::string& name);
+/// The same for a file that is in memory.
+ContainerInfo container_info(std::span<const std::byte> file, const std::string& name);
 
 /// Reads the whole. Blue first becomes red first, and three channels four with alpha 1.
 ///
 /// cost     memory of less than twice the file's length, and some 150 bytes an image
 /// throws   as container_info
-Texture read_container(std::span<const std::byte> bytes, const std::string& name);
+Texture read_container(std::span<const std::byte> file, const std::string& name);
 
 /// Takes the bytes of a file, in order.
 using ByteSink = std::function<void(std::span<const std::byte>)>;

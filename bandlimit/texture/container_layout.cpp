@@ -80,7 +80,7 @@ std::uint64_t ContainerLayout::image_bytes(int level) const {
 
 std::uint32_t FileBytes::u32(std::uint64_t offset) const {
     std::uint32_t value = 0;
-    std::memcpy(&value, part(offset, sizeof value, "its header").data(), sizeof value);
+    std::memcpy(&value, text(offset, sizeof value).data(), sizeof value);
     return value;
 }
 
@@ -88,11 +88,19 @@ std::uint64_t FileBytes::u64(std::uint64_t offset) const {
     return u32(offset) | static_cast<std::uint64_t>(u32(offset + 4)) << 32;
 }
 
-std::span<const std::byte> FileBytes::part(std::uint64_t offset, std::uint64_t length, std::string_view what) const {
-    if (offset > size() || length > size() - offset)
-        fail_file(name, "ends at byte ", size(), ", and ", what, " at byte ", offset, " is ", length,
+std::string_view FileBytes::text(std::uint64_t offset, std::uint64_t bytes) const {
+    require(offset, bytes, "a part of its header");
+    if (offset + bytes > std::min<std::uint64_t>(start.size(), most_header_bytes))
+        fail_file(name, "has a part of its header at byte ", offset, ", and only the first ", most_header_bytes,
+                  " are looked at; leave out what the texture does not need");
+    const auto part = start.subspan(offset, bytes);
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
+}
+
+void FileBytes::require(std::uint64_t offset, std::uint64_t bytes, std::string_view what) const {
+    if (offset > length || bytes > length - offset)
+        fail_file(name, "ends at byte ", length, ", and ", what, " at byte ", offset, " is ", bytes,
                   " bytes long; the file is damaged or was cut short");
-    return bytes.subspan(offset, length);
 }
 
 int checked_count(const FileBytes& file, std::uint32_t value, std::string_view what, int most) {
@@ -109,10 +117,10 @@ void check_claims(const FileBytes& file, const ContainerLayout& layout) {
     if (info.levels > mip_count(info.width, info.height))
         fail_file(file.name, "has ", info.levels, " levels, and ", info.width, " x ", info.height, " has at most ",
                   mip_count(info.width, info.height), "; the file is damaged");
-    const std::uint64_t most_texels = file.size() / (layout.images() * layout.stored.bytes());
+    const std::uint64_t most_texels = file.length / (layout.images() * layout.stored.bytes());
     if (static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) > most_texels)
         fail_file(file.name, "claims ", layout.images(), " images of ", info.width, " x ", info.height, " texels of ",
-                  layout.stored.bytes(), " bytes, and is ", file.size(),
+                  layout.stored.bytes(), " bytes, and is ", file.length,
                   " bytes long; the file is damaged or was cut short");
 }
 

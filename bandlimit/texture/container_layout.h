@@ -51,16 +51,17 @@ struct ContainerLayout {
     std::uint64_t image_bytes(int level) const;
 };
 
-/// What headers are made of: little-endian numbers in the bytes of a file, which are never read past their end.
+/// What headers are made of: little-endian numbers in the first bytes of a file, which are never read past their end.
 struct FileBytes {
-    std::span<const std::byte> bytes;
-    const std::string& name;  ///< what errors call the file
+    std::span<const std::byte> start;  ///< the file, or as much of it as container_info() asks for
+    std::uint64_t length = 0;          ///< of the file
+    const std::string& name;           ///< what errors call it
 
-    std::uint64_t size() const { return bytes.size(); }
     std::uint32_t u32(std::uint64_t offset) const;
     std::uint64_t u64(std::uint64_t offset) const;
-    /// The bytes [offset, offset + length). Throws if the file ends before, calling them `what`.
-    std::span<const std::byte> part(std::uint64_t offset, std::uint64_t length, std::string_view what) const;
+    std::string_view text(std::uint64_t offset, std::uint64_t bytes) const;
+    /// Throws unless the file has the bytes [offset, offset + bytes), calling them `what`.
+    void require(std::uint64_t offset, std::uint64_t bytes, std::string_view what) const;
 };
 
 /// A count of a header as an int of at most `most`. Throws, calling it `what`.

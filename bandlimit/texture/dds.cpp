@@ -140,7 +140,7 @@ void place_levels(const FileBytes& file, ContainerLayout& layout, std::uint64_t 
         chain += layout.image_bytes(level);
     }
     for (LevelPlace& place : layout.levels) place.stride = chain;
-    file.part(start, chain * layout.images(), "the data of all levels, layers and faces");
+    file.require(start, chain * layout.images(), "the data of all levels, layers and faces");
 }
 
 /// What a DX10 header says beside the format; without one, the older header alone counts.
@@ -189,7 +189,7 @@ void append_dx10(HeaderBytes& header, const Texture& texture) {
 const NamedFormat* dds_format(const TexelFormat& format) { return find_format(formats, format); }
 
 ContainerLayout dds_layout(const FileBytes& file) {
-    file.part(0, header_end, "its header");
+    file.require(0, header_end, "its header");
     if (file.u32(at_size) != header_size || file.u32(at_pixel_flags - 4) != pixel_format_size)
         fail_file(file.name, "has headers of ", file.u32(at_size), " and ", file.u32(at_pixel_flags - 4),
                   " bytes, which must be 124 and 32; the file is damaged");
@@ -206,6 +206,7 @@ ContainerLayout dds_layout(const FileBytes& file) {
     layout.info = {.container = Container::dds,
                    .format = name_of(layout.stored),
                    .texels = layout.stored.format,
+                   .texel_bytes = static_cast<int>(layout.stored.bytes()),
                    .width = checked_count(file, file.u32(at_width), "columns", longest),
                    .height = checked_count(file, file.u32(at_height), "rows", longest),
                    .levels = checked_count(file, std::max(file.u32(at_levels), 1u), "levels", longest),

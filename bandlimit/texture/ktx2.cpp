@@ -72,7 +72,7 @@ const NamedFormat& format_of(const FileBytes& file) {
 
 bool is_premultiplied(const FileBytes& file) {
     const std::uint64_t offset = file.u32(at_descriptor), length = file.u32(at_descriptor + 4);
-    file.part(offset, length, "the data format descriptor");
+    file.require(offset, length, "the data format descriptor");
     if (length < total_bytes + block_bytes)
         fail_file(file.name, "has a data format descriptor of ", length, " bytes, which must be ",
                   total_bytes + block_bytes, " or more; the file is damaged");
@@ -83,14 +83,13 @@ bool is_premultiplied(const FileBytes& file) {
 /// The value of `key`, up to a zero byte if it holds one; empty where there is no such key.
 std::string_view value_of(const FileBytes& file, std::string_view key) {
     std::uint64_t offset = file.u32(at_keys), left = file.u32(at_keys + 4);
-    file.part(offset, left, "the key/value data");
+    file.require(offset, left, "the key/value data");
     while (left > 0) {
         const std::uint64_t length = file.u32(offset), padded = (length + 3) / 4 * 4;
         if (left < 4 || padded > left - 4)
             fail_file(file.name, "has an entry of ", length, " bytes that runs out of the key/value data at byte ",
                       offset, "; the file is damaged");
-        const auto entry = file.part(offset + 4, length, "an entry of the key/value data");
-        const std::string_view text(reinterpret_cast<const char*>(entry.data()), entry.size());
+        const std::string_view text = file.text(offset + 4, length);
         if (const std::size_t end = text.find('\0'); end != text.npos && text.substr(0, end) == key)
             return text.substr(end + 1).substr(0, text.substr(end + 1).find('\0'));
         offset += 4 + padded, left -= 4 + padded;
@@ -110,7 +109,7 @@ void place_levels(const FileBytes& file, ContainerLayout& layout) {
     for (int level = 0; level < layout.info.levels; ++level) {
         const std::uint64_t entry = header_bytes + level_bytes * static_cast<std::uint64_t>(level);
         const std::uint64_t start = file.u64(entry), length = file.u64(entry + 8), stride = layout.image_bytes(level);
-        file.part(start, length, message("level ", level));
+        file.require(start, length, message("level ", level));
         if (length != stride * layout.images())
             fail_file(file.name, "has a level ", level, " of ", length, " bytes, which must be ",
                       stride * layout.images(), "; the file is damaged");
@@ -194,7 +193,7 @@ std::vector<std::uint64_t> level_starts(const Texture& texture, std::uint64_t of
 const NamedFormat* ktx2_format(const TexelFormat& format) { return find_format(formats, format); }
 
 ContainerLayout ktx2_layout(const FileBytes& file) {
-    file.part(0, header_bytes, "its header");
+    file.require(0, header_bytes, "its header");
     const NamedFormat& format = format_of(file);
     constexpr int longest = std::numeric_limits<int>::max();
     if (file.u32(at_depth) != 0) fail_file(file.name, "is a volume, which is not read; store its slices as layers");
@@ -210,6 +209,7 @@ ContainerLayout ktx2_layout(const FileBytes& file) {
     layout.info = {.container = Container::ktx2,
                    .format = std::string(format.name),
                    .texels = layout.stored.format,
+                   .texel_bytes = static_cast<int>(layout.stored.bytes()),
                    .width = checked_count(file, file.u32(at_width), "columns", longest),
                    .height = checked_count(file, file.u32(at_height), "rows", longest),
                    .levels = checked_count(file, std::max(levels, 1u), "levels", longest),
