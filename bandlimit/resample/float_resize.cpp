@@ -122,7 +122,7 @@ private:
                !plan_.x_first && width_ == floats->width && !plan_.radial;
     }
     const float* direct_row(int v) const {
-        const int y = resolve(v, plan_.src.y.count, plan_.options.edge) - source_.first_row;
+        const int y = resolve(v, plan_.src.y.count, plan_.edge_y()) - source_.first_row;
         return &std::get<View<const float>>(columns_)(0, y);
     }
 
@@ -161,7 +161,7 @@ private:
     std::optional<View<float>> direct_target(int first, int last) const {
         const auto* floats = std::get_if<View<float>>(&targets_);
         const Encoding& to = target_.encoding;
-        if (!floats || to.transfer != Transfer::linear || !target_.background.empty() ||
+        if (!floats || target_.unrounded.data || to.transfer != Transfer::linear || !target_.background.empty() ||
             (to.alpha >= 0 && premultiplied() != to.associated))
             return {};
         return cropped(*floats, 0, first - target_.first_row, floats->width, last - first);
@@ -187,7 +187,7 @@ private:
     }
 
     void load(int v, float* row) {
-        const int y = resolve(v, plan_.src.y.count, plan_.options.edge);
+        const int y = resolve(v, plan_.src.y.count, plan_.edge_y());
         if (y < 0) return static_cast<void>(std::fill_n(row, length(width_), 0.0f));
         float* const inside = row + length(inside_.begin - strip_.read.begin);
         if (!is_outside()) decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
@@ -211,6 +211,7 @@ private:
     bool store(int from, int i) {
         const std::span<const float> row{out_[from], length(outputs_)};
         const int y = i - target_.first_row;
+        if (target_.unrounded.data) std::copy(row.begin(), row.end(), &target_.unrounded(strip_.first(), y));
         if (target_.background.empty()) return encode_row(row, premultiplied(), targets_, y, target_.encoding);
         opaque_.resize(static_cast<std::size_t>(outputs_) * (channels_ - 1));
         composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque_);

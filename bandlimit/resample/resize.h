@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,6 +27,7 @@ Kernel auto_kernel(const Axis& src, const Axis& dst);
 struct ResizeOptions {
     Reconstruction reconstruction = Auto{};
     Edge edge = Edge::renormalize;
+    std::optional<Edge> edge_y = {};  ///< above and below, where that is another
     /// Deringing, 0 to 1: how much of what overshoots the range of the nearest input samples (those within one pitch of
     /// the coarser grid) is taken away. Not linear; 0 is off.
     double antiring = 0;
@@ -52,6 +54,10 @@ struct TargetRows {
     Encoding encoding;
     /// If not empty: the opaque colour in linear light under the picture; alpha is dropped. [channels - 1]
     std::vector<float> background;
+    /// If not empty: the same rows as the filters made them, before background and encoding: linear light, colour
+    /// multiplied by alpha if ResizeOptions::premultiply or the source says so. [width x height x channels],
+    /// interleaved
+    View<float> unrounded = {};
 };
 
 struct ResizePlan;

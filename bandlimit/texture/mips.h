@@ -63,7 +63,7 @@ struct MipOptions {
     int levels = 0;                ///< how many to make, level 0 included; 0: all, down to 1 x 1
     double alpha_threshold = 0.5;  ///< of alpha_tested: what is not below passes, 0 < threshold <= 1
     /// Of roughness: the normal map of the same surface, as Role::normal reads it, of any size. None: roughness alone.
-    std::optional<AnyConstView> normals;
+    std::optional<AnyConstView> normals = {};
 };
 
 /// The mip chain of one picture: images[0] is the picture itself, in the target's format.
