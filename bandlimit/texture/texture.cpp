@@ -55,8 +55,8 @@ void check_texture(const Texture& texture) {
     require(f.channels == 1 || f.channels == 2 || f.channels == 4, f.channels, " channels; need 1, 2 or 4");
     require(!f.srgb || f.depth == Depth::u8, "sRGB codes of ", name_of(f.depth), "; only u8 has them");
     require(!f.premultiplied || f.channels == 4, "premultiplied colour without alpha; need 4 channels");
-    require(texture.layers >= 1 && (texture.is_array || texture.layers == 1), texture.layers,
-            " layers; need 1, or an array of at least 1");
+    require(texture.layers >= 1 && texture.layers <= (texture.is_array ? most_layers : 1), texture.layers,
+            " layers; need 1, or an array of 1 to ", most_layers);
     require(!texture.levels.empty() && !texture.levels[0].empty(), "no image; need level 0");
     const int width = texture.width(), height = texture.height();
     require(width >= 1 && height >= 1, "size ", width, " x ", height, "; need at least 1 x 1");

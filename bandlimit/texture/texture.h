@@ -26,6 +26,9 @@ int mip_length(int length, int level);
 /// The number of levels down to 1 x 1.
 int mip_count(int width, int height);
 
+/// Layers that a texture may have: more than graphics interfaces take.
+inline constexpr int most_layers = 16384;
+
 /// All images of a texture. They own their samples, interleaved.
 struct Texture {
     TexelFormat format;
@@ -33,7 +36,7 @@ struct Texture {
     bool is_array = false;  ///< an array, if only of one layer
     int layers = 1;
     /// [level][layer * faces() + face]; level l is mip_length(width, l) x mip_length(height, l)
-    std::vector<std::vector<AnyImage>> levels;
+    std::vector<std::vector<AnyImage>> levels = {};
 
     int faces() const { return is_cube ? 6 : 1; }
     int width() const;   ///< of level 0
