@@ -178,7 +178,7 @@ Rule read_rule(const json& object, const fs::path& folder, const std::string& na
         check_rule(rule);
         MipsRecipe recipe = apply(rule, {}, "", rule.match);
         if (!rule.normal.empty() && !recipe.role) recipe.role = Role::roughness;
-        if (recipe.role) check_role(recipe, *recipe.role);
+        if (recipe.role) check_recipe(recipe, *recipe.role);
     } catch (const std::exception& e) {
         fail_file(name, e.what());
     }

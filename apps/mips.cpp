@@ -32,7 +32,7 @@ void check(Options& o) {
     o.batch.in = o.files.front(), o.batch.out = o.files.back();
     o.batch.recipe = o.job.recipe;
     o.batch.parallel = o.parallel;
-    if (o.job.recipe.role) check_role(o.job.recipe, *o.job.recipe.role);
+    if (o.job.recipe.role) check_recipe(o.job.recipe, *o.job.recipe.role);
 }
 
 std::string_view name_of(MipSource from) { return from == MipSource::base ? "base" : "previous"; }

@@ -48,7 +48,7 @@ void set_channels(MipsRecipe& recipe, int channels) {
 
 bool is_data(Role role) { return role != Role::color && role != Role::color_linear && role != Role::alpha_tested; }
 
-void check_role(const MipsRecipe& recipe, Role role) {
+void check_recipe(const MipsRecipe& recipe, Role role) {
     const auto require = [&](bool fits, const std::string& option, const std::string& roles) {
         if (!fits)
             throw UsageError(
@@ -59,6 +59,9 @@ void check_role(const MipsRecipe& recipe, Role role) {
     require(!recipe.two_channel || role == Role::normal, "--two-channel", "normal");
     require(!recipe.premultiplied || !is_data(role), "--premultiplied", "color");
     require(recipe.space != Space::data || is_data(role), "--space data", "data");
+    if (recipe.from == MipSource::base && (recipe.filter == "downsample8" || is_taps_file(recipe.filter)))
+        throw UsageError(fmt::format(
+            "--from base: {} makes a level from the one above; choose a kernel, or leave it out", recipe.filter));
 }
 
 RoleChoice choose_role(const MipsRecipe& recipe, const std::string& path, bool is_linear) {

@@ -34,8 +34,8 @@ void set_channels(MipsRecipe& recipe, int channels);
 /// Whether samples of this role are no colours: never decoded unless asked, and alpha is a channel like the others.
 bool is_data(Role role);
 
-/// Throws UsageError for options that belong to another role.
-void check_role(const MipsRecipe& recipe, Role role);
+/// Throws UsageError for options that belong to another role, or that contradict each other.
+void check_recipe(const MipsRecipe& recipe, Role role);
 
 /// Why a texture has its role.
 struct RoleChoice {

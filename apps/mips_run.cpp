@@ -295,9 +295,11 @@ void check_job(const MipsJob& job) {
     if (job.is_cube && (job.inputs.size() % cube_faces != 0 || (!job.is_array && job.inputs.size() != cube_faces)))
         throw UsageError(fmt::format("--cube: {} inputs; give the six faces +x -x +y -y +z -z{}", job.inputs.size(),
                                      job.is_array ? " of every layer" : ""));
+    if (job.is_cube && !job.recipe.normal.empty())
+        throw UsageError("--normal: six faces have no one map of normals; leave it out with --cube");
     if (job.is_cube && job.recipe.edge_x)
         throw UsageError("--edge: what lies beyond a face of a cube is its neighbour; leave it out with --cube");
-    if (job.recipe.role) check_role(job.recipe, *job.recipe.role);
+    check_recipe(job.recipe, choose_role(job.recipe, job.inputs.front(), false).role);
     if (is_texture) return;
     check_output_format(path_of_level(job.output, 0), job.recipe.depth);
     const auto refuse = [&](bool is_given, const std::string& option) {
@@ -330,7 +332,7 @@ MipsReport make_texture(const MipsJob& job, Parallel parallel) {
     report.role = choose_role(job.recipe, job.inputs.front(), in.is_linear);
     report.has_foreign_profile = in.has_foreign_profile;
     const Role role = report.role->role;
-    check_role(job.recipe, role);
+    check_recipe(job.recipe, role);
     if (has_files && in.layers * in.faces > 1)
         fail_file(job.inputs.front(), "holds ", in.layers * in.faces,
                   " layers and faces, and an image holds one; write a .ktx2 or .dds file");
