@@ -1,24 +1,11 @@
 #include "apps/mips_pictures.h"
 
-#include <array>
-#include <fstream>
-
 #include "apps/mips_recipe.h"
 #include "apps/texture_file.h"
 #include "bandlimit/core/file_error.h"
 
 namespace bandlimit::app {
 namespace {
-
-/// Whether the first bytes of a file, or the name of one that cannot be read, are those of a texture.
-bool is_texture(const std::string& path) {
-    std::array<char, 16> head{};
-    std::ifstream file(path, std::ios::binary);
-    if (!file.is_open()) return container_of_path(path).has_value();
-    file.read(head.data(), head.size());
-    return container_of_bytes(std::as_bytes(std::span(head).first(static_cast<std::size_t>(file.gcount()))))
-        .has_value();
-}
 
 Encoding encoding_of_image(const ImageInfo& info, Role role, Space space) {
     if (space == Space::automatic && is_data(role)) space = Space::data;
@@ -39,7 +26,7 @@ Encoding encoding_of_texture(const TexelFormat& format, Role role, Space space) 
 
 PictureInfo picture_info(const std::string& path) {
     PictureInfo info;
-    if (is_texture(path)) {
+    if (container_of_file(path)) {
         info.texture = texture_info(path);
         info.width = info.texture->width, info.height = info.texture->height;
         info.channels = info.texture->texels.channels;
@@ -63,7 +50,7 @@ PictureInfo picture_info(const std::string& path) {
 }
 
 void read_pictures(const std::string& path, Role role, Space space, int threads, std::vector<Picture>& pictures) {
-    if (is_texture(path)) {
+    if (container_of_file(path)) {
         Texture texture = read_texture(path);
         const Encoding encoding = encoding_of_texture(texture.format, role, space);
         for (AnyImage& image : texture.levels.front()) pictures.push_back({std::move(image), encoding});
