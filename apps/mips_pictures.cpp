@@ -1,7 +1,6 @@
 #include "apps/mips_pictures.h"
 
-#include <array>
-#include <fstream>
+#include <filesystem>
 
 #include "apps/mips_recipe.h"
 #include "apps/texture_file.h"
@@ -10,14 +9,10 @@
 namespace bandlimit::app {
 namespace {
 
-/// Whether the first bytes of a file, or the name of one that cannot be read, are those of a texture.
+/// A missing file is what its name says.
 bool is_texture(const std::string& path) {
-    std::array<char, 16> head{};
-    std::ifstream file(path, std::ios::binary);
-    if (!file.is_open()) return container_of_path(path).has_value();
-    file.read(head.data(), head.size());
-    return container_of_bytes(std::as_bytes(std::span(head).first(static_cast<std::size_t>(file.gcount()))))
-        .has_value();
+    std::error_code error;
+    return container_of_file(path) || (container_of_path(path) && !std::filesystem::exists(path, error));
 }
 
 Encoding encoding_of_image(const ImageInfo& info, Role role, Space space) {
