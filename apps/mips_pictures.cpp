@@ -1,19 +1,11 @@
 #include "apps/mips_pictures.h"
 
-#include <filesystem>
-
 #include "apps/mips_recipe.h"
 #include "apps/texture_file.h"
 #include "bandlimit/core/file_error.h"
 
 namespace bandlimit::app {
 namespace {
-
-/// A missing file is what its name says.
-bool is_texture(const std::string& path) {
-    std::error_code error;
-    return container_of_file(path) || (container_of_path(path) && !std::filesystem::exists(path, error));
-}
 
 Encoding encoding_of_image(const ImageInfo& info, Role role, Space space) {
     if (space == Space::automatic && is_data(role)) space = Space::data;
@@ -34,7 +26,7 @@ Encoding encoding_of_texture(const TexelFormat& format, Role role, Space space) 
 
 PictureInfo picture_info(const std::string& path) {
     PictureInfo info;
-    if (is_texture(path)) {
+    if (container_of_file(path)) {
         info.texture = texture_info(path);
         info.width = info.texture->width, info.height = info.texture->height;
         info.channels = info.texture->texels.channels;
@@ -58,7 +50,7 @@ PictureInfo picture_info(const std::string& path) {
 }
 
 void read_pictures(const std::string& path, Role role, Space space, int threads, std::vector<Picture>& pictures) {
-    if (is_texture(path)) {
+    if (container_of_file(path)) {
         Texture texture = read_texture(path);
         const Encoding encoding = encoding_of_texture(texture.format, role, space);
         for (AnyImage& image : texture.levels.front()) pictures.push_back({std::move(image), encoding});

@@ -27,11 +27,13 @@ void reorder(const std::byte* from, std::string_view order, std::span<T> to, std
     const std::size_t texel_bytes = order.size() * sizeof(T);
     for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t stored = order.find(channel_letters[c]);
-        const std::byte* sample = from + stored * sizeof(T);
-        for (std::size_t i = c; i < to.size(); i += channels, sample += texel_bytes) {
-            if (stored == order.npos) set_opaque(to[i]);
-            else std::memcpy(&to[i], sample, sizeof(T));
+        if (stored == order.npos) {
+            for (std::size_t i = c; i < to.size(); i += channels) set_opaque(to[i]);
+            continue;
         }
+        const std::byte* sample = from + stored * sizeof(T);
+        for (std::size_t i = c; i < to.size(); i += channels, sample += texel_bytes)
+            std::memcpy(&to[i], sample, sizeof(T));
     }
 }
 
