@@ -10,11 +10,12 @@
 #include "apps/mips_pictures.h"
 #include "apps/texture_file.h"
 #include "bandlimit/core/file_error.h"
+#include "bandlimit/texture/alpha_coverage.h"
 
 namespace bandlimit::app {
 namespace {
 
-constexpr int cube_faces = 6;
+constexpr int cube_faces = 6, alpha_channel = 3;
 
 /// The inputs of a job, by their headers.
 struct Inputs {
@@ -118,6 +119,8 @@ Target image_target(const MipsJob& job, const Inputs& in, Role role) {
 Target target_of(const MipsJob& job, const Inputs& in, Role role) {
     if (role == Role::normal && in.channels < 2)
         fail_file(job.inputs.front(), "has one channel, and a normal has two or more; choose another role, as height");
+    if (role == Role::alpha_tested && !in.has_alpha)
+        fail_file(job.inputs.front(), "has no alpha to test; choose another role, as color");
     const auto container = container_of_path(job.output);
     return container ? texture_target(job, in, role, *container) : image_target(job, in, role);
 }
@@ -191,25 +194,12 @@ Texture filter(const MipsJob& job, const Inputs& in, std::vector<Picture> pictur
     return texture;
 }
 
-double value_of(std::uint8_t code) { return from_code(code); }
-double value_of(std::uint16_t code) { return from_code(code); }
-double value_of(Half half) { return to_float(half); }
-double value_of(float value) { return value; }
-
 /// The share of texels whose alpha is not below `threshold`.
-double coverage_of(const std::vector<AnyImage>& images, double threshold) {
-    std::int64_t passing = 0, all = 0;
+double coverage_of(const std::vector<AnyImage>& images, const MipsReport::Level& level, double threshold) {
+    std::size_t passing = 0;
     for (const AnyImage& image : images)
-        std::visit(
-            [&](const auto& i) {
-                const auto view = i.view();
-                for (int y = 0; y < view.height; ++y)
-                    for (int x = 0; x < view.width; ++x)
-                        passing += value_of(view(x, y, view.channels - 1)) >= threshold;
-                all += std::int64_t{view.width} * view.height;
-            },
-            image);
-    return static_cast<double>(passing) / static_cast<double>(all);
+        passing += std::visit([&](const auto& i) { return count_passing(i.view(), alpha_channel, threshold); }, image);
+    return static_cast<double>(passing) / (double(level.width) * level.height * static_cast<double>(images.size()));
 }
 
 /// What the levels are, before they are written.
@@ -223,7 +213,7 @@ std::vector<MipsReport::Level> levels_of(const Texture& texture, const MipsJob& 
         l.bytes = static_cast<std::uint64_t>(l.width) * static_cast<std::uint64_t>(l.height) * images.size() *
                   static_cast<std::uint64_t>(texture.format.channels) * size_of(texture.format.depth);
         if (has_files) l.file = path_of_level(job.output, level);
-        if (threshold && texture.format.channels == 4) l.coverage = coverage_of(images, *threshold);
+        if (threshold) l.coverage = coverage_of(images, l, *threshold);
         levels.push_back(l);
     }
     return levels;
@@ -267,16 +257,16 @@ MipsReport copy_levels(const MipsJob& job, int threads) {
     return report;
 }
 
-MipsCost cost_of(const Inputs& in, const TexelFormat& texels) {
+/// Pictures, texture, and what is between them: levels as floats, a row of them or all, and the moments of normals.
+MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& recipe) {
     const auto pixels = static_cast<std::uint64_t>(in.width) * static_cast<std::uint64_t>(in.height);
     const auto images = static_cast<std::uint64_t>(in.layers) * static_cast<std::uint64_t>(in.faces);
     const std::uint64_t source = static_cast<std::uint64_t>(in.channels) * size_of(in.depth);
     const std::uint64_t stored = static_cast<std::uint64_t>(texels.channels) * size_of(texels.depth);
-    const std::uint64_t working = static_cast<std::uint64_t>(texels.channels) * sizeof(float);
+    const std::uint64_t floats = sizeof(float) * static_cast<std::uint64_t>(texels.channels * in.faces);
+    const std::uint64_t moments = recipe.normal.empty() ? 0 : 8 * sizeof(float);
     constexpr std::uint64_t codec = 32 << 20;
-    return {pixels * images,
-            pixels * (images * (source + stored + stored / 3 + 1) + working * static_cast<std::uint64_t>(in.faces)) +
-                codec};
+    return {pixels * images, pixels * (images * (source + stored + stored / 3 + 1) + floats + moments) + codec};
 }
 
 }  // namespace
@@ -319,7 +309,7 @@ void check_job(const MipsJob& job) {
 MipsCost cost_of(const MipsJob& job) {
     const Inputs in = inputs_of(job);
     const RoleChoice choice = choose_role(job.recipe, job.inputs.front(), in.is_linear);
-    return cost_of(in, target_of(job, in, choice.role).texels);
+    return cost_of(in, target_of(job, in, choice.role).texels, job.recipe);
 }
 
 MipsReport make_texture(const MipsJob& job, Parallel parallel) {
@@ -337,7 +327,7 @@ MipsReport make_texture(const MipsJob& job, Parallel parallel) {
         fail_file(job.inputs.front(), "holds ", in.layers * in.faces,
                   " layers and faces, and an image holds one; write a .ktx2 or .dds file");
     const Target target = target_of(job, in, role);
-    require_memory(cost_of(in, target.texels).bytes,
+    require_memory(cost_of(in, target.texels, job.recipe).bytes,
                    fmt::format("making the levels of {} x {} texels", in.width, in.height));
 
     MipOptions options = options_of(job.recipe, role);
