@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/texture/dds.h"
@@ -62,10 +63,36 @@ Texture read_container(std::span<const std::byte> file, const std::string& name)
     return read_images(file, layout_of(file, file.size(), name));
 }
 
+std::span<const std::byte> bytes_of(const AnyImage& image) {
+    return std::visit(
+        [](const auto& i) {
+            const auto samples = static_cast<std::size_t>(i.width()) * static_cast<std::size_t>(i.height()) *
+                                 static_cast<std::size_t>(i.channels());
+            return std::as_bytes(std::span(i.view().data, samples));
+        },
+        image);
+}
+
+ContainerPlan plan_container(const TextureShape& shape, Container container) {
+    check_container(container, shape.format);
+    return container == Container::ktx2 ? plan_ktx2(shape) : plan_dds(shape);
+}
+
 void write_container(const Texture& texture, Container container, const ByteSink& sink) {
     check_texture(texture);
-    check_container(container, texture.format);
-    container == Container::ktx2 ? write_ktx2(texture, sink) : write_dds(texture, sink);
+    const ContainerPlan plan = plan_container(texture.shape(), container);
+    std::map<std::uint64_t, const AnyImage*> images;
+    for (std::size_t level = 0; level < plan.levels.size(); ++level)
+        for (std::size_t i = 0; i < texture.levels[level].size(); ++i)
+            images[plan.levels[level].start + i * plan.levels[level].stride] = &texture.levels[level][i];
+    sink(plan.header);
+    std::uint64_t position = plan.header.size();
+    for (const auto& [start, image] : images) {
+        const std::vector<std::byte> padding(start - position);
+        const std::span<const std::byte> texels = bytes_of(*image);
+        sink(padding), sink(texels);
+        position = start + texels.size();
+    }
 }
 
 }  // namespace bandlimit

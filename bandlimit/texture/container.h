@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bandlimit/texture/texture.h"
 
@@ -50,13 +51,32 @@ ContainerInfo container_info(std::span<const std::byte> file, const std::string&
 /// throws   as container_info
 Texture read_container(std::span<const std::byte> file, const std::string& name);
 
-/// Takes the bytes of a file, in order.
-using ByteSink = std::function<void(std::span<const std::byte>)>;
-/// Writes `texture` to `sink`.
+/// Where a file keeps the images of a level: image i begins at start + i * stride.
+struct LevelPlace {
+    std::uint64_t start = 0, stride = 0;
+};
+
+/// A file to be written: what stands before the first texel, and where the images go. What lies between is zeros.
+struct ContainerPlan {
+    std::vector<std::byte> header;
+    std::vector<LevelPlace> levels;
+    std::uint64_t bytes = 0;  ///< of the file
+};
+/// The file that will hold a texture of this shape, for those who write level by level, or row by row.
 ///
 /// DDS does not tell an array of one layer from a texture without layers, nor whether 1 or 2 channels are sRGB.
-/// cost     copies no texel; a header of at most 1 KiB is made
-/// throws   Error as check_texture and check_container, and for a DDS whose rows take 4 GiB or more; what `sink` throws
+/// throws   Error as check_container, and for a DDS whose rows take 4 GiB or more
+ContainerPlan plan_container(const TextureShape& shape, Container container);
+
+/// The samples of an interleaved image, as a file stores them.
+std::span<const std::byte> bytes_of(const AnyImage& image);
+
+/// Takes the bytes of a file, in order.
+using ByteSink = std::function<void(std::span<const std::byte>)>;
+/// Writes `texture` to `sink`, as plan_container() has it.
+///
+/// cost     copies no texel
+/// throws   Error as check_texture and plan_container; what `sink` throws
 void write_container(const Texture& texture, Container container, const ByteSink& sink);
 
 }  // namespace bandlimit

@@ -158,14 +158,4 @@ void HeaderBytes::text(std::string_view text) {
     for (const char c : text) bytes_.push_back(static_cast<std::byte>(c));
 }
 
-std::span<const std::byte> bytes_of(const AnyImage& image) {
-    return std::visit(
-        [](const auto& i) {
-            const auto samples = static_cast<std::size_t>(i.width()) * static_cast<std::size_t>(i.height()) *
-                                 static_cast<std::size_t>(i.channels());
-            return std::as_bytes(std::span(i.view().data, samples));
-        },
-        image);
-}
-
 }  // namespace bandlimit

@@ -34,11 +34,6 @@ const NamedFormat* find_format(std::span<const NamedFormat> formats, const Store
 /// As above, for texels of `format` in the order of their channels.
 const NamedFormat* find_format(std::span<const NamedFormat> formats, const TexelFormat& format);
 
-/// Where a file keeps the images of a level: image i begins at start + i * stride.
-struct LevelPlace {
-    std::uint64_t start = 0, stride = 0;
-};
-
 /// All that a header says.
 struct ContainerLayout {
     ContainerInfo info;
@@ -82,13 +77,11 @@ public:
     void zeros(std::uint64_t count) { bytes_.insert(bytes_.end(), count, std::byte{0}); }
     void text(std::string_view text);
     std::size_t size() const { return bytes_.size(); }
-    operator std::span<const std::byte>() const { return bytes_; }
+    void append(const HeaderBytes& other) { bytes_.insert(bytes_.end(), other.bytes_.begin(), other.bytes_.end()); }
+    std::vector<std::byte> take() { return std::move(bytes_); }
 
 private:
     std::vector<std::byte> bytes_;
 };
-
-/// The samples of an image, as a file stores them.
-std::span<const std::byte> bytes_of(const AnyImage& image);
 
 }  // namespace bandlimit

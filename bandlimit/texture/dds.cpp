@@ -160,13 +160,13 @@ void read_dx10(const FileBytes& file, ContainerLayout& layout) {
 // ---- writing
 
 /// Whether the older header tells all that there is to say. Luminance is R8; masks are RGBA8.
-bool fits_old_header(const Texture& texture) {
-    const TexelFormat& f = texture.format;
-    return !texture.is_array && !f.srgb && !f.premultiplied && f.depth == Depth::u8 && f.channels != 2;
+bool fits_old_header(const TextureShape& shape) {
+    const TexelFormat& f = shape.format;
+    return !shape.is_array && !f.srgb && !f.premultiplied && f.depth == Depth::u8 && f.channels != 2;
 }
 
-void append_pixel_format(HeaderBytes& header, const Texture& texture) {
-    const bool is_old = fits_old_header(texture), has_color = texture.format.channels == 4;
+void append_pixel_format(HeaderBytes& header, const TextureShape& shape) {
+    const bool is_old = fits_old_header(shape), has_color = shape.format.channels == 4;
     header.u32(pixel_format_size);
     header.u32(!is_old ? has_code : has_color ? has_colors | has_alpha : has_luminance);
     header.u32(is_old ? 0 : dx10);
@@ -175,12 +175,12 @@ void append_pixel_format(HeaderBytes& header, const Texture& texture) {
         header.u32(is_old && (has_color || mask == 0xff) ? mask : 0);
 }
 
-void append_dx10(HeaderBytes& header, const Texture& texture) {
-    const TexelFormat& format = texture.format;
+void append_dx10(HeaderBytes& header, const TextureShape& shape) {
+    const TexelFormat& format = shape.format;
     header.u32(dds_format(format)->number);
     header.u32(texture_2d);
-    header.u32(texture.is_cube ? misc_cube : 0);
-    header.u32(static_cast<std::uint64_t>(texture.layers));
+    header.u32(shape.is_cube ? misc_cube : 0);
+    header.u32(static_cast<std::uint64_t>(shape.layers));
     header.u32(format.premultiplied ? alpha_premultiplied : format.channels == 4 ? alpha_straight : 0);
 }
 
@@ -217,28 +217,34 @@ ContainerLayout dds_layout(const FileBytes& file) {
     return layout;
 }
 
-void write_dds(const Texture& texture, const ByteSink& sink) {
-    const auto levels = static_cast<std::uint64_t>(texture.levels.size()),
-               width = static_cast<std::uint64_t>(texture.width());
+ContainerPlan plan_dds(const TextureShape& shape) {
+    const auto levels = static_cast<std::uint64_t>(shape.levels), width = static_cast<std::uint64_t>(shape.width);
     HeaderBytes header;
     header.text(dds_identifier);
     header.u32(header_size);
     header.u32(has_caps | has_height | has_width | has_pitch | has_pixel_format | has_mipmap_count);
-    header.u32(static_cast<std::uint64_t>(texture.height()));
+    header.u32(static_cast<std::uint64_t>(shape.height));
     header.u32(width);
-    header.u32(width * static_cast<std::uint64_t>(texture.format.channels) * size_of(texture.format.depth));
+    header.u32(width * static_cast<std::uint64_t>(shape.format.channels) * size_of(shape.format.depth));
     header.u32(0);  // depth
     header.u32(levels);
     header.zeros(44);
-    append_pixel_format(header, texture);
-    header.u32(caps_texture | (levels > 1 ? caps_complex | caps_mipmap : 0) | (texture.is_cube ? caps_complex : 0));
-    header.u32(texture.is_cube ? caps2_cube | caps2_all_faces : 0);
+    append_pixel_format(header, shape);
+    header.u32(caps_texture | (levels > 1 ? caps_complex | caps_mipmap : 0) | (shape.is_cube ? caps_complex : 0));
+    header.u32(shape.is_cube ? caps2_cube | caps2_all_faces : 0);
     header.zeros(12);
-    if (!fits_old_header(texture)) append_dx10(header, texture);
-    sink(header);
-    const int images = texture.layers * texture.faces();
-    for (std::size_t image = 0; image < static_cast<std::size_t>(images); ++image)
-        for (const auto& level : texture.levels) sink(bytes_of(level[image]));
+    if (!fits_old_header(shape)) append_dx10(header, shape);
+
+    ContainerPlan plan;
+    std::uint64_t chain = 0;
+    for (int level = 0; level < shape.levels; ++level) {
+        plan.levels.push_back({header.size() + chain, 0});
+        chain += shape.image_bytes(level);
+    }
+    for (LevelPlace& place : plan.levels) place.stride = chain;
+    plan.bytes = header.size() + chain * static_cast<std::uint64_t>(shape.layers * shape.faces());
+    plan.header = header.take();
+    return plan;
 }
 
 }  // namespace bandlimit

@@ -20,10 +20,10 @@ ContainerLayout dds_layout(const FileBytes& file);
 /// The format in which texels are written; null if there is none.
 const NamedFormat* dds_format(const TexelFormat& format);
 
-/// Writes a texture that check_texture() and check_container() accept, layer by layer, face by face.
+/// Plans a file for what check_container() accepts: layer by layer, face by face.
 ///
 /// The header is DX10's, but for the two formats that the older header can tell exactly and that older readers know by
 /// it alone: R8 and RGBA8, linear, straight, and no array.
-void write_dds(const Texture& texture, const ByteSink& sink);
+ContainerPlan plan_dds(const TextureShape& shape);
 
 }  // namespace bandlimit

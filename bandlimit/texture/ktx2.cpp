@@ -174,18 +174,19 @@ HeaderBytes data_format_descriptor(const TexelFormat& format) {
 
 std::uint64_t round_up(std::uint64_t value, std::uint64_t step) { return (value + step - 1) / step * step; }
 
-std::uint64_t level_length(const std::vector<AnyImage>& images) {
-    return bytes_of(images.front()).size() * images.size();
+std::uint64_t level_length(const TextureShape& shape, int level) {
+    return shape.image_bytes(level) * static_cast<std::uint64_t>(shape.layers * shape.faces());
 }
 
-/// Where each level begins, when the smallest is first and none before `offset`.
-std::vector<std::uint64_t> level_starts(const Texture& texture, std::uint64_t offset, std::uint64_t alignment) {
-    std::vector<std::uint64_t> starts(texture.levels.size());
-    for (std::size_t level = starts.size(); level-- > 0;) {
-        starts[level] = round_up(offset, alignment);
-        offset = starts[level] + level_length(texture.levels[level]);
+/// Gives every level its place: the smallest is first, and none before `offset`.
+void place_levels(const TextureShape& shape, std::uint64_t offset, std::uint64_t alignment, ContainerPlan& plan) {
+    plan.levels.resize(static_cast<std::size_t>(shape.levels));
+    for (int level = shape.levels; level-- > 0;) {
+        const std::uint64_t start = round_up(offset, alignment);
+        plan.levels[static_cast<std::size_t>(level)] = {start, shape.image_bytes(level)};
+        offset = start + level_length(shape, level);
     }
-    return starts;
+    plan.bytes = offset;
 }
 
 }  // namespace
@@ -221,43 +222,38 @@ ContainerLayout ktx2_layout(const FileBytes& file) {
     return layout;
 }
 
-void write_ktx2(const Texture& texture, const ByteSink& sink) {
-    const TexelFormat& format = texture.format;
+ContainerPlan plan_ktx2(const TextureShape& shape) {
+    const TexelFormat& format = shape.format;
     const std::uint64_t sample = size_of(format.depth), texel = sample * static_cast<std::uint64_t>(format.channels);
     const HeaderBytes descriptor = data_format_descriptor(format), keys = keys_and_values();
-    const std::uint64_t descriptor_start = header_bytes + level_bytes * texture.levels.size();
+    const std::uint64_t descriptor_start = header_bytes + level_bytes * static_cast<std::uint64_t>(shape.levels);
     const std::uint64_t keys_start = descriptor_start + descriptor.size();
-    const auto starts = level_starts(texture, keys_start + keys.size(), std::lcm(texel, std::uint64_t{4}));
+    ContainerPlan plan;
+    place_levels(shape, keys_start + keys.size(), std::lcm(texel, std::uint64_t{4}), plan);
 
     HeaderBytes header;
     header.text(ktx2_identifier);
     header.u32(ktx2_format(format)->number);
     header.u32(sample);
-    header.u32(static_cast<std::uint64_t>(texture.width()));
-    header.u32(static_cast<std::uint64_t>(texture.height()));
+    header.u32(static_cast<std::uint64_t>(shape.width));
+    header.u32(static_cast<std::uint64_t>(shape.height));
     header.u32(0);  // depth
-    header.u32(texture.is_array ? static_cast<std::uint64_t>(texture.layers) : 0);
-    header.u32(static_cast<std::uint64_t>(texture.faces()));
-    header.u32(texture.levels.size());
+    header.u32(shape.is_array ? static_cast<std::uint64_t>(shape.layers) : 0);
+    header.u32(static_cast<std::uint64_t>(shape.faces()));
+    header.u32(static_cast<std::uint64_t>(shape.levels));
     header.u32(0);  // supercompression
     for (const std::uint64_t number :
          {descriptor_start, std::uint64_t{descriptor.size()}, keys_start, std::uint64_t{keys.size()}})
         header.u32(number);
     header.u64(0), header.u64(0);  // data of supercompression
-    for (std::size_t level = 0; level < starts.size(); ++level) {
-        const std::uint64_t length = level_length(texture.levels[level]);
-        for (const std::uint64_t number : {starts[level], length, length}) header.u64(number);
+    for (int level = 0; level < shape.levels; ++level) {
+        const std::uint64_t length = level_length(shape, level);
+        for (const std::uint64_t number : {plan.levels[static_cast<std::size_t>(level)].start, length, length})
+            header.u64(number);
     }
-    sink(header), sink(descriptor), sink(keys);
-
-    std::uint64_t position = keys_start + keys.size();
-    for (std::size_t level = starts.size(); level-- > 0;) {
-        HeaderBytes padding;
-        padding.zeros(starts[level] - position);
-        sink(padding);
-        for (const AnyImage& image : texture.levels[level]) sink(bytes_of(image));
-        position = starts[level] + level_length(texture.levels[level]);
-    }
+    header.append(descriptor), header.append(keys);
+    plan.header = header.take();
+    return plan;
 }
 
 }  // namespace bandlimit

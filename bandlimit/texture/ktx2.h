@@ -18,10 +18,10 @@ ContainerLayout ktx2_layout(const FileBytes& file);
 /// The format in which texels are written; null if there is none.
 const NamedFormat* ktx2_format(const TexelFormat& format);
 
-/// Writes a texture that check_texture() and check_container() accept: levels from the smallest to the largest, each at
+/// Plans a file for what check_container() accepts: levels from the smallest to the largest, each at
 /// a multiple of its texels and of 4 bytes, with the keys KTXorientation and KTXwriter.
 ///
 /// source   as above; descriptor: Khronos Data Format Specification 1.3, section 5
-void write_ktx2(const Texture& texture, const ByteSink& sink);
+ContainerPlan plan_ktx2(const TextureShape& shape);
 
 }  // namespace bandlimit

@@ -50,6 +50,16 @@ const AnyImage& Texture::image(int level, int layer, int face) const {
     return levels.at(static_cast<std::size_t>(level)).at(static_cast<std::size_t>(layer * faces() + face));
 }
 
+std::uint64_t TextureShape::image_bytes(int level) const {
+    return static_cast<std::uint64_t>(mip_length(width, level)) *
+           static_cast<std::uint64_t>(mip_length(height, level)) * static_cast<std::uint64_t>(format.channels) *
+           size_of(format.depth);
+}
+
+TextureShape Texture::shape() const {
+    return {format, width(), height(), static_cast<int>(levels.size()), layers, is_cube, is_array};
+}
+
 void check_texture(const Texture& texture) {
     const TexelFormat& f = texture.format;
     require(f.channels == 1 || f.channels == 2 || f.channels == 4, f.channels, " channels; need 1, 2 or 4");
