@@ -63,9 +63,12 @@ function(bandlimit_program)
         return()
     endif()
     find_package(CLI11 REQUIRED)
+    find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+    find_library(XXHASH_LIBRARY xxhash REQUIRED)
     add_executable(bandlimit ${sources})
     target_link_libraries(bandlimit PRIVATE
-        bandlimit::core bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+        bandlimit::core bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
+    target_include_directories(bandlimit SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
     target_compile_definitions(bandlimit PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
     # Every verb includes both, and they take longer to read than the verbs.
     target_precompile_headers(bandlimit PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)

@@ -161,7 +161,7 @@ private:
     std::optional<View<float>> direct_target(int first, int last) const {
         const auto* floats = std::get_if<View<float>>(&targets_);
         const Encoding& to = target_.encoding;
-        if (!floats || target_.unrounded.data || to.transfer != Transfer::linear || !target_.background.empty() ||
+        if (!floats || to.transfer != Transfer::linear || !target_.background.empty() ||
             (to.alpha >= 0 && premultiplied() != to.associated))
             return {};
         return cropped(*floats, 0, first - target_.first_row, floats->width, last - first);
@@ -211,7 +211,6 @@ private:
     bool store(int from, int i) {
         const std::span<const float> row{out_[from], length(outputs_)};
         const int y = i - target_.first_row;
-        if (target_.unrounded.data) std::copy(row.begin(), row.end(), &target_.unrounded(strip_.first(), y));
         if (target_.background.empty()) return encode_row(row, premultiplied(), targets_, y, target_.encoding);
         opaque_.resize(static_cast<std::size_t>(outputs_) * (channels_ - 1));
         composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque_);

@@ -42,7 +42,7 @@ struct ResizePlan {
         const bool multiplied = from.alpha >= 0 && options.premultiply && !from.associated;
         const bool converted = to.alpha >= 0 && (options.premultiply || from.associated) != to.associated;
         return from.transfer == Transfer::linear && to.transfer == Transfer::linear && !multiplied && !converted &&
-               options.antiring == 0 && target.background.empty() && !target.unrounded.data;
+               options.antiring == 0 && target.background.empty();
     }
 };
 

@@ -134,11 +134,6 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
         (source.encoding.alpha < 0 || target.background.size() != static_cast<std::size_t>(out_channels)))
         fail("Resizer::run: a background of ", target.background.size(), " channels; it needs an alpha channel and ",
              out_channels, " values");
-    const View<float>& floats = target.unrounded;
-    if (floats.data && (floats.width != to.width || floats.height != to.height || floats.channels != plan_->channels ||
-                        floats.dx != plan_->channels || floats.dc != 1))
-        fail("Resizer::run: unrounded rows of ", floats.width, " x ", floats.height, " with ", floats.channels,
-             " channels; need those of the target, interleaved, with ", plan_->channels);
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
     if (needed.begin < source.first_row || needed.end > source.first_row + from.height)

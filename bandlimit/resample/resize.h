@@ -54,10 +54,6 @@ struct TargetRows {
     Encoding encoding;
     /// If not empty: the opaque colour in linear light under the picture; alpha is dropped. [channels - 1]
     std::vector<float> background;
-    /// If not empty: the same rows as the filters made them, before background and encoding: linear light, colour
-    /// multiplied by alpha if ResizeOptions::premultiply or the source says so. [width x height x channels],
-    /// interleaved
-    View<float> unrounded = {};
 };
 
 struct ResizePlan;

@@ -238,7 +238,6 @@ bool TermFilter::rows(const SourceRows& source, const TargetRows& target, int fi
         const std::span<float> row{&sum.view()(0, i), length};
         rescale(row, first + i, channels);
         const int y = first + i - target.first_row;
-        if (target.unrounded.data) std::copy(row.begin(), row.end(), &target.unrounded(0, y));
         lost |= encode_row(row, premultiply_ || source.encoding.associated, target.samples, y, target.encoding);
     }
     return lost;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/texture/cascade.h"
 #include "bandlimit/texture/cube.h"
 #include "bandlimit/texture/level_filter.h"
 #include "bandlimit/texture/role_levels.h"
@@ -16,6 +17,20 @@ struct Size {
 };
 Size size_of_view(const AnyConstView& view) {
     return std::visit([](const auto& v) { return Size{v.width, v.height}; }, view);
+}
+int channels_of(const AnyConstView& view) {
+    return std::visit([](const auto& v) { return v.channels; }, view);
+}
+/// A view without samples.
+AnyConstView shape_only(Depth depth, int width, int height, int channels) {
+    const AnyImage none = make_image(depth, 0, 0, channels);
+    return std::visit(
+        [&](const auto& image) -> AnyConstView {
+            auto view = image.view();
+            view.width = width, view.height = height;
+            return view;
+        },
+        none);
 }
 Size at_level(Size base, int level) { return {mip_length(base.width, level), mip_length(base.height, level)}; }
 
@@ -53,6 +68,13 @@ Grid grid_of(Size samples, Size interval) {
 LevelFilter::Options edges_of(const MipOptions& options) {
     const auto edge = [&](Edge e) { return options.role == Role::normal && e == Edge::zero ? Edge::renormalize : e; };
     return {edge(options.edge_x), edge(options.edge_y), true};
+}
+
+ResizeOptions resize_options(const MipOptions& options) {
+    const LevelFilter::Options edges = edges_of(options);
+    ResizeOptions resize{.edge = edges.edge_x, .edge_y = edges.edge_y};
+    if (const auto* kernel = std::get_if<Kernel>(&options.filter)) resize.reconstruction = *kernel;
+    return resize;
 }
 
 constexpr std::size_t face_count = 6;
@@ -105,8 +127,106 @@ private:
 
 }  // namespace
 
+namespace {
+constexpr int base_block = 256;  ///< rows at a time where there is nothing but level 0
+}
+
+struct MipStream::State {
+    RoleLevels role;
+    MipCascade cascade;
+    int levels, height;
+    Parallel parallel;
+    int step = 0;              ///< the next one
+    int stored_base_rows = 0;  ///< of level 0, in the target's format
+
+    int base_blocks() const { return (height - 1) / base_block + 1; }
+};
+
+bool MipStream::is_possible(const MipOptions& options, int channels) {
+    const bool is_kernel =
+        std::holds_alternative<Auto>(options.filter) || std::holds_alternative<Kernel>(options.filter);
+    const bool stands_alone = options.role != Role::roughness && options.role != Role::alpha_tested &&
+                              !(options.role == Role::normal && channels == 2);
+    return is_kernel && stands_alone && options.from == MipSource::previous;
+}
+
+MipStream::MipStream(int width, int height, int channels, Depth depth, const Encoding& stored,
+                     const TexelFormat& target, const MipOptions& options, Parallel parallel) {
+    if (!is_possible(options, channels))
+        fail("MipStream: ", name_of(options.role), " of ", channels,
+             " channels with this filter; pass what is_possible(), or use make_mips");
+    const int levels = check_levels({width, height}, options);
+    RoleLevels role(shape_only(depth, width, height, channels), stored, target, options, parallel);
+    MipCascade cascade(width, height, channels, role.source().encoding, levels, resize_options(options), parallel);
+    state_ = std::make_unique<State>(State{std::move(role), std::move(cascade), levels, height, parallel});
+}
+
+MipStream::~MipStream() = default;
+MipStream::MipStream(MipStream&&) noexcept = default;
+MipStream& MipStream::operator=(MipStream&&) noexcept = default;
+
+int MipStream::levels() const { return state_->levels; }
+int MipStream::steps() const { return state_->cascade.steps() > 0 ? state_->cascade.steps() : state_->base_blocks(); }
+
+IndexRange MipStream::rows_needed(int step) const {
+    const State& s = *state_;
+    if (s.cascade.steps() == 0) return {step * base_block, std::min((step + 1) * base_block, s.height)};
+    // A kernel may skip rows, which level 0 holds all the same.
+    const IndexRange read = s.cascade.rows_needed(step);
+    const int before = step > 0 ? s.cascade.rows_needed(step - 1).end : 0;
+    return {std::min(read.begin, before), step + 1 == s.cascade.steps() ? s.height : read.end};
+}
+
+bool MipStream::advance(const AnyConstView& rows, int first, const Sink& sink) {
+    State& s = *state_;
+    if (s.step == steps()) fail("MipStream::advance: all levels are made; call it steps() times");
+    const IndexRange needed = rows_needed(s.step);
+    const int held = size_of_view(rows).height;
+    if (first > needed.begin || first + held < needed.end)
+        fail("MipStream::advance: rows ", first, " to ", first + held, "; rows ", needed.begin, " to ", needed.end,
+             " are needed");
+    ++s.step;
+    bool lost = false;
+    if (const int begin = s.stored_base_rows, count = needed.end - begin; count > 0) {
+        const AnyView to = sink.place(0, begin, count);
+        lost |= s.role.store_base_rows(rows_of(rows, begin - first, count), to, s.parallel);
+        sink.finished(0, begin, to);
+        s.stored_base_rows = needed.end;
+    }
+    if (s.cascade.steps() == 0) return lost;
+    s.cascade.advance(rows, first, [&](int level, int row, View<const float> floats) {
+        const AnyView to = sink.place(level, row, floats.height);
+        lost |= s.role.store_rows(floats, to, s.parallel);
+        sink.finished(level, row, to);
+    });
+    return lost;
+}
+
+namespace {
+
+MipChain make_by_rows(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
+                      const MipOptions& options, Parallel parallel) {
+    const Size size = size_of_view(base);
+    MipStream stream(size.width, size.height, channels_of(base), depth_of(base), stored, target, options, parallel);
+    MipChain chain;
+    for (int level = 0; level < stream.levels(); ++level) {
+        const Size s = at_level(size, level);
+        chain.images.push_back(make_image(target.depth, s.width, s.height, target.channels));
+    }
+    const auto place = [&](int level, int first, int count) {
+        return rows_of(view_of(chain.images[static_cast<std::size_t>(level)]), first, count);
+    };
+    for (int step = 0; step < stream.steps(); ++step)
+        chain.lost_non_finite |= stream.advance(base, 0, {place, [](int, int, const AnyView&) {}});
+    return chain;
+}
+
+}  // namespace
+
 MipChain make_mips(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
                    const MipOptions& options, Parallel parallel) {
+    if (MipStream::is_possible(options, channels_of(base)))
+        return make_by_rows(base, stored, target, options, parallel);
     const Size size = size_of_view(base);
     const int count = check_levels(size, options);
     RoleLevels role(base, stored, target, options, parallel);
@@ -133,14 +253,11 @@ std::vector<MipChain> make_cube_mips(std::span<const AnyConstView> faces, const 
                                      const TexelFormat& target, const MipOptions& options, Parallel parallel) {
     if (faces.size() != face_count) fail("make_cube_mips: ", faces.size(), " faces; pass 6: +x -x +y -y +z -z");
     if (options.normals) fail("make_cube_mips: one map of normals for six faces; pass none, or each face to make_mips");
-    const auto channels = [](const AnyConstView& view) {
-        return std::visit([](const auto& v) { return v.channels; }, view);
-    };
     const Size size = size_of_view(faces[0]);
     for (const AnyConstView& face : faces) {
         const Size other = size_of_view(face);
         if (other.width != size.width || other.height != size.width || depth_of(face) != depth_of(faces[0]) ||
-            channels(face) != channels(faces[0]))
+            channels_of(face) != channels_of(faces[0]))
             fail("make_cube_mips: faces of ", size.width, " x ", size.height, " and ", other.width, " x ", other.height,
                  "; pass six squares of the same size, depth and channels");
     }

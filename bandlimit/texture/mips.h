@@ -1,5 +1,7 @@
 // Mip chains that know what their texels mean.
 #pragma once
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +77,49 @@ struct MipChain {
 };
 MipChain make_mips(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
                    const MipOptions& options = {}, Parallel parallel = {});
+
+/// A mip chain made while the rows of its picture come by, so that neither need be in memory: for textures of any
+/// size. Its levels have the bits of make_mips().
+///
+/// memory   as MipCascade: about 200 rows of each level, and all rows under Edge::wrap along y
+class MipStream {
+public:
+    /// Whether chains of these options, of pictures of so many channels, can be made by rows: by a kernel or Auto, each
+    /// level from the previous, of all roles but roughness, alpha_tested, and normals of two channels.
+    static bool is_possible(const MipOptions& options, int channels);
+
+    /// The picture has width x height samples of so many channels and depth, stored as `stored`.
+    /// throws   Error as make_mips, and where it is not possible
+    MipStream(int width, int height, int channels, Depth depth, const Encoding& stored, const TexelFormat& target,
+              const MipOptions& options = {}, Parallel parallel = {});
+    ~MipStream();
+    MipStream(MipStream&&) noexcept;
+    MipStream& operator=(MipStream&&) noexcept;
+
+    int levels() const;
+    /// How often advance() must be called to make all.
+    int steps() const;
+    /// The rows [begin, end) of the picture that it reads when it is called for the (step + 1)-th time. From step to
+    /// step neither end falls, and all rows are among them.
+    IndexRange rows_needed(int step) const;
+
+    /// Where rows go: place() gives the memory for rows [first, first + count) of a level in the target's format,
+    /// interleaved, and finished() tells that they are made. Rows of a level come from top to bottom, by one thread.
+    struct Sink {
+        std::function<AnyView(int level, int first, int count)> place;
+        std::function<void(int level, int first, const AnyView& rows)> finished;
+    };
+    /// Takes the next step, on all levels. Row 0 of `rows` is row `first` of the picture; they must hold
+    /// rows_needed(), and may hold more.
+    ///
+    /// returns  whether a value that is not finite was stored as the code 0
+    /// throws   Error for rows that do not fit, or after the last step; what `sink` throws
+    bool advance(const AnyConstView& rows, int first, const Sink& sink);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// The mip chain of six square faces of a cube, filtered across their edges.
 ///

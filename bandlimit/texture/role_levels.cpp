@@ -137,15 +137,14 @@ SourceRows RoleLevels::source() const {
     return {base_, 0, stored_};
 }
 
-Image<float> RoleLevels::source_as_floats(Parallel parallel) const {
-    if (decoded_) return decoded_->clone();
-    if (role_ == Role::normal && base_channels_ == 2) return decode_normals(base_, false, parallel);
-    const Shape shape = shape_of(base_);
+Image<float> RoleLevels::floats_of(const AnyConstView& rows, Parallel parallel) const {
+    if (role_ == Role::normal && base_channels_ == 2) return decode_normals(rows, false, parallel);
+    const Shape shape = shape_of(rows);
     Image<float> floats(shape.width, shape.height, shape.channels, Layout::interleaved);
     const int filtered = shape.channels, rough = has_own_alpha() ? filtered - 1 : filtered;
     any_row(shape.height, 0, parallel, [&](int y, std::span<float>) {
         const std::span<float> row{&floats.view()(0, y), row_length(shape)};
-        decode_row(base_, y, stored_, true, row);
+        decode_row(rows, y, stored_, true, row);
         if (role_ == Role::roughness)
             for (std::size_t i = 0; i < row.size(); ++i)
                 if (static_cast<int>(i) % filtered < rough) row[i] = roughness_variance(row[i]);
@@ -156,7 +155,7 @@ Image<float> RoleLevels::source_as_floats(Parallel parallel) const {
 
 void RoleLevels::release_source() { decoded_.reset(); }
 
-AnyView RoleLevels::filtered_part(AnyImage& image) const {
+AnyView RoleLevels::filtered_part(const AnyView& image) const {
     const int count = base_channels_;
     const bool grey_alpha = base_is_grey_alpha_ && target_.channels == 4;
     return std::visit(
@@ -165,7 +164,7 @@ AnyView RoleLevels::filtered_part(AnyImage& image) const {
             if (grey_alpha) v.dc *= 3;  // red and alpha
             return AnyView(v);
         },
-        view_of(image));
+        image);
 }
 
 Encoding RoleLevels::target_encoding() const {
@@ -176,8 +175,9 @@ Encoding RoleLevels::target_encoding() const {
     return encoding;
 }
 
-void RoleLevels::complete(AnyImage& image, Parallel parallel) const {
-    const AnyView view = view_of(image);
+/// Fills the channels that are not filtered.
+void RoleLevels::complete(const AnyView& image, Parallel parallel) const {
+    if (role_ == Role::normal) return;
     if (role_ == Role::mask && !is_integer(target_.depth)) clamp_samples(filtered_part(image), parallel);
     const bool is_grey = base_channels_ == 1 || base_is_grey_alpha_;
     if (target_.channels == base_channels_) return;
@@ -194,29 +194,37 @@ void RoleLevels::complete(AnyImage& image, Parallel parallel) const {
                     }
             });
         },
-        view);
+        image);
+}
+
+bool RoleLevels::are_codes_of_normals() const { return is_integer(depth_of(base_)) && base_channels_ > 2; }
+
+bool RoleLevels::store_base_rows(const AnyConstView& rows, const AnyView& target, Parallel parallel) const {
+    const Shape shape = shape_of(rows);
+    const Encoding to = target_encoding();
+    const bool is_same = depth_of(rows) == target_.depth && base_channels_ == target_.channels &&
+                         stored_.transfer == to.transfer && (to.alpha < 0 || stored_.associated == to.associated);
+    bool lost = false;
+    if (is_same) copy_samples(rows, target, parallel);
+    else if (role_ == Role::normal) {
+        // Two channels are decoded to vectors already; others are read as they are.
+        const Image<float> samples = floats_of(rows, parallel);
+        return encode_normals({samples.view(), are_codes_of_normals()}, target, parallel);
+    } else {
+        const AnyView part = filtered_part(target);
+        lost = any_row(shape.height, row_length(shape), parallel, [&](int y, std::span<float> row) {
+            decode_row(rows, y, stored_, false, row);
+            return encode_row(row, stored_.associated, part, y, to);
+        });
+    }
+    complete(target, parallel);
+    return lost;
 }
 
 AnyImage RoleLevels::level_zero(bool& lost, Parallel parallel) {
     const Shape shape = shape_of(base_);
     AnyImage image = make_image(target_.depth, shape.width, shape.height, target_.channels);
-    const Encoding to = target_encoding();
-    const bool is_same = depth_of(base_) == target_.depth && base_channels_ == target_.channels &&
-                         stored_.transfer == to.transfer && (to.alpha < 0 || stored_.associated == to.associated);
-    if (is_same) copy_samples(base_, view_of(image), parallel);
-    else if (role_ == Role::normal) {
-        // A view of two channels is decoded to vectors already; others are read as they are.
-        const Image<float> samples = source_as_floats(parallel);
-        const bool are_codes = is_integer(depth_of(base_)) && base_channels_ > 2;
-        lost |= encode_normals({samples.view(), are_codes}, view_of(image), parallel);
-    } else {
-        const AnyView part = filtered_part(image);
-        lost |= any_row(shape.height, row_length(shape), parallel, [&](int y, std::span<float> row) {
-            decode_row(base_, y, stored_, false, row);
-            return encode_row(row, stored_.associated, part, y, to);
-        });
-    }
-    if (role_ != Role::normal) complete(image, parallel);
+    lost |= store_base_rows(base_, view_of(image), parallel);
     if (role_ == Role::alpha_tested) {
         const double passing = static_cast<double>(count_passing(const_view(view_of(image)), 3, alpha_threshold_));
         share_ = passing / (static_cast<double>(shape.width) * shape.height);
@@ -224,25 +232,32 @@ AnyImage RoleLevels::level_zero(bool& lost, Parallel parallel) {
     return image;
 }
 
-AnyImage RoleLevels::finish(View<const float> floats, bool& lost, Parallel parallel) {
-    AnyImage image = make_image(target_.depth, floats.width, floats.height, target_.channels);
-    if (role_ == Role::normal) {
-        const bool are_codes = is_integer(depth_of(base_)) && base_channels_ > 2;
-        lost |= encode_normals({floats, are_codes}, view_of(image), parallel);
-        return image;
-    }
-    if (role_ == Role::roughness) finish_roughness(floats, filtered_part(image), lost, parallel);
-    else finish_coverage(floats, filtered_part(image), lost, parallel);
-    complete(image, parallel);
-    return image;
+bool RoleLevels::store_rows(View<const float> floats, const AnyView& target, Parallel parallel) const {
+    if (role_ == Role::normal) return encode_normals({floats, are_codes_of_normals()}, target, parallel);
+    const AnyView part = filtered_part(target);
+    const auto samples = static_cast<std::size_t>(floats.width) * static_cast<std::size_t>(floats.channels);
+    const bool lost = any_row(floats.height, 0, parallel, [&](int y, std::span<float>) {
+        return encode_row({&floats(0, y), samples}, between_.associated, part, y, target_encoding());
+    });
+    complete(target, parallel);
+    return lost;
 }
 
-void RoleLevels::finish_roughness(View<const float> floats, const AnyView& target, bool& lost, Parallel parallel) {
+bool RoleLevels::finish(View<const float> floats, const AnyView& target, Parallel parallel) {
+    if (role_ != Role::roughness && role_ != Role::alpha_tested) return store_rows(floats, target, parallel);
+    const AnyView part = filtered_part(target);
+    const bool lost =
+        role_ == Role::roughness ? finish_roughness(floats, part, parallel) : finish_coverage(floats, part, parallel);
+    complete(target, parallel);
+    return lost;
+}
+
+bool RoleLevels::finish_roughness(View<const float> floats, const AnyView& target, Parallel parallel) {
     std::optional<View<const float>> means;
     if (moments_) means = moments_->means(floats.width, floats.height, parallel);
     const auto step = static_cast<std::size_t>(channels_), rough = has_own_alpha() ? step - 1 : step;
     const auto width = static_cast<std::size_t>(floats.width);
-    lost |= any_row(floats.height, width * (step + 1), parallel, [&](int y, std::span<float> scratch) {
+    return any_row(floats.height, width * (step + 1), parallel, [&](int y, std::span<float> scratch) {
         const std::span<float> row = scratch.first(width * step), added = scratch.subspan(width * step);
         if (means) lost_variances(*means, y, added);
         std::copy_n(&floats(0, y), row.size(), row.begin());
@@ -256,7 +271,7 @@ void RoleLevels::finish_roughness(View<const float> floats, const AnyView& targe
     });
 }
 
-void RoleLevels::finish_coverage(View<const float> floats, const AnyView& target, bool& lost, Parallel parallel) const {
+bool RoleLevels::finish_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const {
     const auto step = static_cast<std::size_t>(channels_), width = static_cast<std::size_t>(floats.width);
     const int alpha = between_.alpha;
     std::vector<float> alphas;
@@ -264,7 +279,7 @@ void RoleLevels::finish_coverage(View<const float> floats, const AnyView& target
     for (int y = 0; y < floats.height; ++y)
         for (int x = 0; x < floats.width; ++x) alphas.push_back(floats(x, y, alpha));
     const double factor = coverage_factor(std::move(alphas), share_, target_.depth, alpha_threshold_);
-    lost |= any_row(floats.height, width * step, parallel, [&](int y, std::span<float> row) {
+    return any_row(floats.height, width * step, parallel, [&](int y, std::span<float> row) {
         std::copy_n(&floats(0, y), row.size(), row.begin());
         if (factor != 1)
             for (std::size_t x = 0; x < width; ++x) {

@@ -15,7 +15,7 @@ namespace bandlimit {
 /// takes what normals lost, alpha is scaled to the coverage of level 0.
 class RoleLevels {
 public:
-    /// `base` must stay until release_source().
+    /// `base` must stay until release_source(); where the chain goes by rows, only its shape and depth matter.
     /// throws  Error where role, encoding, target and channels do not fit
     RoleLevels(const AnyConstView& base, const Encoding& stored, const TexelFormat& target, const MipOptions& options,
                Parallel parallel);
@@ -23,7 +23,9 @@ public:
     /// What the filter reads as level 0: the base, or floats that were made of it, as SourceRows.
     SourceRows source() const;
     /// The same as floats like those between levels.
-    Image<float> source_as_floats(Parallel parallel) const;
+    Image<float> source_as_floats(Parallel parallel) const {
+        return decoded_ ? decoded_->clone() : floats_of(base_, parallel);
+    }
     void release_source();
 
     int channels() const { return channels_; }            ///< that are filtered
@@ -36,29 +38,38 @@ public:
     template <class Filter>
     AnyImage level(const Filter& filter, const SourceRows& from, Image<float>& floats, bool keep_floats, int width,
                    int height, bool& lost, Parallel parallel) {
-        const bool finishes = needs_finish();
-        floats = finishes || keep_floats ? Image<float>(width, height, channels_, Layout::interleaved) : Image<float>();
-        if (finishes) {
-            filter.run(from, {floats.view(), 0, between_, {}}, parallel);
-            return finish(floats.view(), lost, parallel);
-        }
         AnyImage image = make_image(target_.depth, width, height, target_.channels);
-        const View<float> kept = keep_floats ? floats.view() : View<float>{};
-        lost |= filter.run(from, {filtered_part(image), 0, target_encoding(), {}, kept}, parallel);
-        complete(image, parallel);
+        if (keep_floats || needs_finish()) {
+            floats = Image<float>(width, height, channels_, Layout::interleaved);
+            filter.run(from, {floats.view(), 0, between_, {}}, parallel);
+            lost |= finish(floats.view(), view_of(image), parallel);
+        } else {
+            lost |= filter.run(from, {filtered_part(view_of(image)), 0, target_encoding(), {}}, parallel);
+            complete(view_of(image), parallel);
+        }
         return image;
     }
+
+    /// Whether rows of a level are finished without the others, and level 0 is read as it is stored.
+    bool goes_by_rows() const { return role_ != Role::roughness && role_ != Role::alpha_tested && !decoded_; }
+    /// Rows of level 0 in the target's format.
+    bool store_base_rows(const AnyConstView& rows, const AnyView& target, Parallel parallel) const;
+    /// Rows of another level, of floats as they are between levels. Both return whether a value that is not finite was
+    /// stored as the code 0.
+    bool store_rows(View<const float> floats, const AnyView& target, Parallel parallel) const;
 
 private:
     bool is_light() const;
     bool needs_finish() const;
     bool has_own_alpha() const;  ///< whether the last channel of the base is alpha, or data in its place
-    AnyView filtered_part(AnyImage& image) const;
+    bool are_codes_of_normals() const;
+    AnyView filtered_part(const AnyView& image) const;
     Encoding target_encoding() const;
-    void complete(AnyImage& image, Parallel parallel) const;
-    AnyImage finish(View<const float> floats, bool& lost, Parallel parallel);
-    void finish_roughness(View<const float> floats, const AnyView& target, bool& lost, Parallel parallel);
-    void finish_coverage(View<const float> floats, const AnyView& target, bool& lost, Parallel parallel) const;
+    Image<float> floats_of(const AnyConstView& rows, Parallel parallel) const;
+    void complete(const AnyView& image, Parallel parallel) const;
+    bool finish(View<const float> floats, const AnyView& target, Parallel parallel);
+    bool finish_roughness(View<const float> floats, const AnyView& target, Parallel parallel);
+    bool finish_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const;
     void check(const Encoding& stored, const MipOptions& options) const;
 
     AnyConstView base_;
