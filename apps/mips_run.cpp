@@ -306,6 +306,14 @@ void check_job(const MipsJob& job) {
     refuse(job.recipe.premultiplied, "--premultiplied");
 }
 
+std::vector<std::string> notes_of(const MipsReport& report, const std::string& path) {
+    std::vector<std::string> notes;
+    if (report.has_foreign_profile)
+        notes.push_back(path + " has an ICC profile that is not sRGB: its curve is treated as sRGB");
+    if (report.lost_non_finite) notes.push_back(path + " holds NaN or infinite values; they became 0");
+    return notes;
+}
+
 MipsCost cost_of(const MipsJob& job) {
     const Inputs in = inputs_of(job);
     const RoleChoice choice = choose_role(job.recipe, job.inputs.front(), in.is_linear);
