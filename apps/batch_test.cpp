@@ -163,9 +163,10 @@ TEST(Batch, ThreadsAndMemoryDoNotChangeTheFiles) {
     EXPECT_EQ(files.size(), 13u);
     for (const std::string other : {"three", "little"}) {
         EXPECT_EQ(files_below(shell / other), files);
-        for (const std::string& file : files)
-            if (file != manifest_name)
-                EXPECT_EQ(bytes_of(shell / ("one/" + file)), bytes_of(shell / (other + "/" + file))) << file;
+        for (const std::string& file : files) {
+            if (file == manifest_name) continue;
+            EXPECT_EQ(bytes_of(shell / ("one/" + file)), bytes_of(shell / (other + "/" + file))) << file;
+        }
     }
 }
 

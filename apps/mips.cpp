@@ -125,7 +125,9 @@ void print(const Options& o, const MipsReport& r) {
 
 void run_one(const Options& o) {
     const Stopwatch watch;
-    const MipsReport report = make_texture(o.job, o.parallel);
+    MipsJob job = o.job;
+    job.shows_progress = true;
+    const MipsReport report = make_texture(job, o.parallel);
     note_choices(o.job, report);
     if (o.json) print_json(report_of(o, report, watch.total()));
     else print(o, report);

@@ -16,7 +16,8 @@ struct MipsJob {
     std::vector<std::string> inputs;
     std::string output;  ///< .ktx2, .dds, or images of a pattern, "name_%d.png"
     bool is_cube = false, is_array = false;
-    bool keep_levels = false;  ///< copy the levels of the one texture that is read; the recipe has no say
+    bool shows_progress = false;  ///< on a terminal
+    bool keep_levels = false;     ///< copy the levels of the one texture that is read; the recipe has no say
     MipsRecipe recipe;
 };
 

@@ -33,13 +33,11 @@ MipCascade::MipCascade(int width, int height, int channels, const Encoding& stor
     }
 }
 
-int MipCascade::block_end(const Step& step) const { return std::min(step.done + block_, step.height); }
-
-/// The rows of the level above that the next block of level i + 1 reads. Under Edge::wrap its last rows read the first
-/// ones, which must stay.
-IndexRange MipCascade::needed(std::size_t i) const {
+/// The rows of the level above that the block of level i + 1 from row `first` on reads. Under Edge::wrap its last rows
+/// read the first ones, which must stay.
+IndexRange MipCascade::needed(std::size_t i, int first) const {
     const Step& step = steps_[i];
-    const IndexRange next = step.resizer.rows_needed(step.done, block_end(step));
+    const IndexRange next = step.resizer.rows_needed(first, block_end(step, first));
     const IndexRange last = step.resizer.rows_needed(step.height - 1, step.height);
     return {std::min(next.begin, last.begin), next.end};
 }
@@ -48,7 +46,7 @@ IndexRange MipCascade::needed(std::size_t i) const {
 int MipCascade::largest_need(const Step& step) const {
     int largest = 0;
     for (int first = 0; first < step.height; first += block_) {
-        const IndexRange range = step.resizer.rows_needed(first, std::min(first + block_, step.height));
+        const IndexRange range = step.resizer.rows_needed(first, block_end(step, first));
         largest = std::max(largest, range.end - range.begin);
     }
     return largest;
@@ -68,7 +66,7 @@ void MipCascade::drop_rows(std::size_t i) {
 void MipCascade::make_block(std::size_t i, const SourceRows& source, const Sink& sink) {
     drop_rows(i);
     Step& step = steps_[i];
-    const int end = block_end(step);
+    const int end = block_end(step, step.done);
     const View<float> rows = cropped(step.window.view(), 0, step.done - step.kept, step.width, end - step.done);
     step.resizer.run(source, {rows, step.done, between_, {}}, parallel_);
     sink(static_cast<int>(i) + 1, step.done, rows);
@@ -87,7 +85,8 @@ void MipCascade::descend(std::size_t i, const SourceRows& source, const Sink& si
 }
 
 void MipCascade::advance(const AnyConstView& rows, int first, const Sink& sink) {
-    if (is_done()) fail("MipCascade::advance: all rows are made; ask is_done() before");
+    if (steps_.empty() || steps_[0].done == steps_[0].height)
+        fail("MipCascade::advance: all rows are made; call it steps() times");
     descend(0, {rows, first, stored_}, sink);
 }
 

@@ -1,5 +1,6 @@
 // The levels of a mip chain, each from the one above, a few rows at a time.
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -26,9 +27,11 @@ public:
     MipCascade(int width, int height, int channels, const Encoding& stored, int levels, const ResizeOptions& options,
                Parallel parallel = {});
 
-    bool is_done() const { return steps_.empty() || steps_[0].done == steps_[0].height; }
-    /// The rows of level 0 that advance() reads next; `begin` never falls. Only while not done.
-    IndexRange rows_needed() const { return needed(0); }
+    /// How often advance() must be called to make all.
+    int steps() const { return steps_.empty() ? 0 : (steps_[0].height - 1) / block_ + 1; }
+    /// The rows of level 0 that it reads when it is called for the (step + 1)-th time. From step to step neither end
+    /// falls.
+    IndexRange rows_needed(int step) const { return needed(0, step * block_); }
     /// Makes the next rows of level 1, and what they allow of the levels below it. Row 0 of `rows` is row `first` of
     /// level 0; they must hold rows_needed(), and may hold more.
     /// throws   Error if sizes or rows do not fit; what `sink` throws
@@ -44,8 +47,9 @@ private:
         Image<float> window{};  ///< rows [kept, done), and room for the next block
     };
 
-    int block_end(const Step& step) const;
-    IndexRange needed(std::size_t i) const;
+    int block_end(const Step& step, int first) const { return std::min(first + block_, step.height); }
+    IndexRange needed(std::size_t i, int first) const;
+    IndexRange needed(std::size_t i) const { return needed(i, steps_[i].done); }
     int largest_need(const Step& step) const;
     void make_block(std::size_t i, const SourceRows& source, const Sink& sink);
     void descend(std::size_t i, const SourceRows& source, const Sink& sink);

@@ -52,8 +52,8 @@ Levels by_cascade(const Image<std::uint8_t>& base, const Encoding& stored, int c
     std::vector<int> expected(levels.size(), 0);
     MipCascade cascade(base.width(), base.height(), base.channels(), stored, count, options, parallel);
     int begin = 0;
-    while (!cascade.is_done()) {
-        const IndexRange needed = cascade.rows_needed();
+    for (int step = 0; step < cascade.steps(); ++step) {
+        const IndexRange needed = cascade.rows_needed(step);
         EXPECT_GE(needed.begin, begin);
         begin = needed.begin;
         const auto rows = cropped(base.view(), 0, needed.begin, base.width(), needed.end - needed.begin);
@@ -96,7 +96,7 @@ TEST(MipCascade, HasTheBitsOfWholeLevelsOneAfterAnother) {
 TEST(MipCascade, StopsAtTheLevelsAskedFor) {
     const Image<std::uint8_t> base = codes(16, 16, 1);
     EXPECT_EQ(by_cascade(base, {}, 3, {}, {}).size(), 2u);
-    EXPECT_TRUE(MipCascade(16, 16, 1, {}, 1, {}).is_done());
+    EXPECT_EQ(MipCascade(16, 16, 1, {}, 1, {}).steps(), 0);
     EXPECT_THROW(MipCascade(16, 16, 1, {}, 6, {}), Error);
     EXPECT_THROW(MipCascade(16, 0, 1, {}, 1, {}), Error);
 }
@@ -107,7 +107,6 @@ TEST(MipCascade, RefusesRowsThatDoNotHoldWhatIsNeeded) {
     const auto ignore = [](int, int, View<const float>) {};
     EXPECT_THROW(cascade.advance(cropped(base.view(), 0, 0, 16, 15), 0, ignore), Error);
     cascade.advance(base.view(), 0, ignore);
-    EXPECT_TRUE(cascade.is_done());
     EXPECT_THROW(cascade.advance(base.view(), 0, ignore), Error);
 }
 

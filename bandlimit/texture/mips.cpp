@@ -127,12 +127,19 @@ private:
 
 }  // namespace
 
+namespace {
+constexpr int base_block = 256;  ///< rows at a time where there is nothing but level 0
+}
+
 struct MipStream::State {
     RoleLevels role;
     MipCascade cascade;
     int levels, height;
     Parallel parallel;
+    int step = 0;              ///< the next one
     int stored_base_rows = 0;  ///< of level 0, in the target's format
+
+    int base_blocks() const { return (height - 1) / base_block + 1; }
 };
 
 bool MipStream::is_possible(const MipOptions& options, int channels) {
@@ -159,28 +166,34 @@ MipStream::MipStream(MipStream&&) noexcept = default;
 MipStream& MipStream::operator=(MipStream&&) noexcept = default;
 
 int MipStream::levels() const { return state_->levels; }
-bool MipStream::is_done() const { return state_->cascade.is_done() && state_->stored_base_rows == state_->height; }
+int MipStream::steps() const { return state_->cascade.steps() > 0 ? state_->cascade.steps() : state_->base_blocks(); }
 
-IndexRange MipStream::rows_needed() const {
+IndexRange MipStream::rows_needed(int step) const {
     const State& s = *state_;
-    constexpr int most = 256;  // of rows that no kernel reads any more
-    if (s.cascade.is_done()) return {s.stored_base_rows, std::min(s.stored_base_rows + most, s.height)};
-    const IndexRange read = s.cascade.rows_needed();  // a kernel may skip rows that level 0 holds all the same
-    return {std::min(read.begin, s.stored_base_rows), read.end};
+    if (s.cascade.steps() == 0) return {step * base_block, std::min((step + 1) * base_block, s.height)};
+    // A kernel may skip rows, which level 0 holds all the same.
+    const IndexRange read = s.cascade.rows_needed(step);
+    const int before = step > 0 ? s.cascade.rows_needed(step - 1).end : 0;
+    return {std::min(read.begin, before), step + 1 == s.cascade.steps() ? s.height : read.end};
 }
 
 bool MipStream::advance(const AnyConstView& rows, int first, const Sink& sink) {
     State& s = *state_;
-    const int end = std::max(rows_needed().end, s.stored_base_rows);
+    if (s.step == steps()) fail("MipStream::advance: all levels are made; call it steps() times");
+    const IndexRange needed = rows_needed(s.step);
+    const int held = size_of_view(rows).height;
+    if (first > needed.begin || first + held < needed.end)
+        fail("MipStream::advance: rows ", first, " to ", first + held, "; rows ", needed.begin, " to ", needed.end,
+             " are needed");
+    ++s.step;
     bool lost = false;
-    if (end > s.stored_base_rows) {
-        const int begin = s.stored_base_rows, count = end - begin;
+    if (const int begin = s.stored_base_rows, count = needed.end - begin; count > 0) {
         const AnyView to = sink.place(0, begin, count);
         lost |= s.role.store_base_rows(rows_of(rows, begin - first, count), to, s.parallel);
         sink.finished(0, begin, to);
-        s.stored_base_rows = end;
+        s.stored_base_rows = needed.end;
     }
-    if (s.cascade.is_done()) return lost;
+    if (s.cascade.steps() == 0) return lost;
     s.cascade.advance(rows, first, [&](int level, int row, View<const float> floats) {
         const AnyView to = sink.place(level, row, floats.height);
         lost |= s.role.store_rows(floats, to, s.parallel);
@@ -203,7 +216,7 @@ MipChain make_by_rows(const AnyConstView& base, const Encoding& stored, const Te
     const auto place = [&](int level, int first, int count) {
         return rows_of(view_of(chain.images[static_cast<std::size_t>(level)]), first, count);
     };
-    while (!stream.is_done())
+    for (int step = 0; step < stream.steps(); ++step)
         chain.lost_non_finite |= stream.advance(base, 0, {place, [](int, int, const AnyView&) {}});
     return chain;
 }

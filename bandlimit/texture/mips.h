@@ -97,9 +97,11 @@ public:
     MipStream& operator=(MipStream&&) noexcept;
 
     int levels() const;
-    bool is_done() const;
-    /// The rows [begin, end) of the picture that advance() reads next; `begin` never falls. Only while not done.
-    IndexRange rows_needed() const;
+    /// How often advance() must be called to make all.
+    int steps() const;
+    /// The rows [begin, end) of the picture that it reads when it is called for the (step + 1)-th time. From step to
+    /// step neither end falls, and all rows are among them.
+    IndexRange rows_needed(int step) const;
 
     /// Where rows go: place() gives the memory for rows [first, first + count) of a level in the target's format,
     /// interleaved, and finished() tells that they are made. Rows of a level come from top to bottom, by one thread.
@@ -107,10 +109,11 @@ public:
         std::function<AnyView(int level, int first, int count)> place;
         std::function<void(int level, int first, const AnyView& rows)> finished;
     };
-    /// Makes what the next rows allow, on all levels. Row 0 of `rows` is row `first` of the picture; they must hold
+    /// Takes the next step, on all levels. Row 0 of `rows` is row `first` of the picture; they must hold
     /// rows_needed(), and may hold more.
     ///
     /// returns  whether a value that is not finite was stored as the code 0
+    /// throws   Error for rows that do not fit, or after the last step; what `sink` throws
     bool advance(const AnyConstView& rows, int first, const Sink& sink);
 
 private:

@@ -39,8 +39,8 @@ std::vector<AnyImage> streamed(const Image<std::uint8_t>& base, const Encoding& 
                                    finished[static_cast<std::size_t>(level)] +=
                                        std::visit([](const auto& v) { return v.height; }, rows);
                                }};
-    while (!stream.is_done()) {
-        const IndexRange needed = stream.rows_needed();
+    for (int step = 0; step < stream.steps(); ++step) {
+        const IndexRange needed = stream.rows_needed(step);
         const int count = needed.end - needed.begin;
         // A copy, so that a read outside of the window is one outside of memory.
         Image<std::uint8_t> window(base.width(), count, base.channels(), Layout::interleaved);
