@@ -30,7 +30,8 @@ std::set<std::string> files_below(const std::string& folder) {
 std::map<std::string, json> plan_of(const Outcome& run) {
     std::map<std::string, json> plan;
     EXPECT_EQ(run.code, 0) << run;
-    for (const json& file : run.json()["plan"]) plan[file["file"]] = file;
+    const json report = run.json();
+    for (const json& file : report["plan"]) plan[file["file"]] = file;
     return plan;
 }
 

@@ -260,7 +260,6 @@ MipsReport copy_levels(const MipsJob& job, int threads) {
     return report;
 }
 
-/// Pictures, texture, and what is between them: levels as floats, a row of them or all, and the moments of normals.
 /// Whether the levels can be made while the one picture is read.
 bool goes_by_rows(const MipsJob& job, const Inputs& in, const TexelFormat& texels, const MipOptions& options) {
     return container_of_path(job.output) && in.infos.size() == 1 && !in.infos.front().texture &&
@@ -284,6 +283,7 @@ void make_by_rows(const MipsJob& job, const TexelFormat& texels, const MipOption
     report.read += stream.read, report.filter = stream.filter, report.write = stream.write;
 }
 
+/// Pictures, texture, and what is between them: levels as floats, a row of them or all, and the moments of normals.
 MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& recipe, bool by_rows) {
     const auto pixels = static_cast<std::uint64_t>(in.width) * static_cast<std::uint64_t>(in.height);
     const auto images = static_cast<std::uint64_t>(in.layers) * static_cast<std::uint64_t>(in.faces);
@@ -293,7 +293,8 @@ MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& 
     const std::uint64_t moments = recipe.normal.empty() ? 0 : 8 * sizeof(float);
     constexpr std::uint64_t codec = 32 << 20;
     if (by_rows) {  // bands of the picture and of the levels, as stream_texture() says
-        const std::uint64_t rows = static_cast<std::uint64_t>(std::min(in.height, 600));
+        const int most = recipe.edge_y == Edge::wrap ? in.height : 600;  // the first rows need the last ones
+        const auto rows = static_cast<std::uint64_t>(std::min(in.height, most));
         return {pixels, rows * static_cast<std::uint64_t>(in.width) * (source + stored + floats) + codec};
     }
     return {pixels * images, pixels * (images * (source + stored + stored / 3 + 1) + floats + moments) + codec};
@@ -334,6 +335,14 @@ void check_job(const MipsJob& job) {
     refuse(job.recipe.channels != 0, "--channels");
     refuse(job.recipe.two_channel, "--two-channel");
     refuse(job.recipe.premultiplied, "--premultiplied");
+}
+
+std::vector<std::string> notes_of(const MipsReport& report, const std::string& path) {
+    std::vector<std::string> notes;
+    if (report.has_foreign_profile)
+        notes.push_back(path + " has an ICC profile that is not sRGB: its curve is treated as sRGB");
+    if (report.lost_non_finite) notes.push_back(path + " holds NaN or infinite values; they became 0");
+    return notes;
 }
 
 MipsCost cost_of(const MipsJob& job) {

@@ -45,6 +45,9 @@ struct MipsReport {
     double read = 0, filter = 0, write = 0;  ///< seconds
 };
 
+/// What the user should know about the picture `path` that became this.
+std::vector<std::string> notes_of(const MipsReport& report, const std::string& path);
+
 /// Reads, filters, writes. Whatever fails, nothing of the output appears.
 ///
 /// throws  UsageError for options that do not fit the role; std::runtime_error and Error for files and pictures

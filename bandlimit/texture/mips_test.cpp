@@ -50,13 +50,16 @@ TEST(MakeMips, KeepConstants) {
         const bool is_light = role == Role::color || role == Role::alpha_tested;
         const TexelFormat target = is_light ? rgba8_srgb : rgba8;
         for (int h = 1; h <= 17; ++h)
-            for (int w = 1; w <= 17; w += (h == 1 || h == 9) ? 1 : 4) {
+            for (int w = 1; w <= 17; w += h == 1 ? 1 : 8) {
                 const auto base = picture<std::uint8_t>(w, h, 4, [&](int, int, int c) { return want[std::size_t(c)]; });
                 for (const MipFilter& filter : all_filters())
                     for (const MipSource from : sources) {
-                        if (!suits(filter, from)) continue;
+                        // The tables of radial kernels take a while.
+                        const bool is_radial =
+                            std::get_if<Kernel>(&filter) && bandlimit::is_radial(std::get<Kernel>(filter));
+                        if (!suits(filter, from) || (is_radial && h % 8 != 1)) continue;
                         expect_constant(make_mips(base.view(), is_light ? srgb_alpha : linear_alpha, target,
-                                                  {.role = role, .filter = filter, .from = from}),
+                                                  {.role = role, .filter = filter, .from = from}, {1}),
                                         want, 4);
                         if (testing::Test::HasFatalFailure()) FAIL() << name_of(role) << ' ' << w << " x " << h;
                     }
