@@ -58,8 +58,8 @@ void mips(benchmark::State& state, const Case& c, int threads) {
         state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         floor += copy_seconds();
     }
-    state.counters["copies"] = benchmark::Counter(
-        static_cast<double>(state.iterations()) / (floor > 0 ? floor : 1), benchmark::Counter::kDefaults);
+    state.counters["copies"] = benchmark::Counter(static_cast<double>(state.iterations()) / (floor > 0 ? floor : 1),
+                                                  benchmark::Counter::kDefaults);
 }
 
 void add(const Case& c) {

