@@ -154,7 +154,8 @@ void print(const BatchReport& r) {
 
 void print(const std::vector<PlannedFile>& plan) {
     for (const PlannedFile& file : plan)
-        fmt::print("{:<11} {:<13} {:<14} {}\n", file.state, file.role, file.because, file.input);
+        fmt::print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
+                   file.because.empty() ? "" : " (" + file.because + ")");
 }
 
 ordered_json report_of(const std::vector<PlannedFile>& plan) {
