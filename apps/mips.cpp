@@ -154,7 +154,8 @@ void print(const BatchReport& r) {
 
 void print(const std::vector<PlannedFile>& plan) {
     for (const PlannedFile& file : plan)
-        fmt::print("{:<11} {:<13} {:<14} {}\n", file.state, file.role, file.because, file.input);
+        fmt::print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
+                   file.because.empty() ? "" : " (" + file.because + ")");
 }
 
 ordered_json report_of(const std::vector<PlannedFile>& plan) {
@@ -241,11 +242,14 @@ std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Optio
     return options;
 }
 
-std::uint64_t parse_bytes(const std::string& option, std::string text) {
-    const std::string given = text;
-    if (!CLI::AsSizeValue(false)(text).empty() || parse_number(option, text) < 1)
-        throw UsageError(fmt::format("{}: \"{}\" is no amount of memory; write as 512MB or 4GB", option, given));
-    return std::stoull(text);
+/// "512MB", "4G": a number with a unit of 1024 or its powers. Throws UsageError, naming the option.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+    std::string bytes = text;
+    try {
+        if (CLI::AsSizeValue(false)(bytes).empty() && parse_number(option, bytes) >= 1) return std::stoull(bytes);
+    } catch (const CLI::Error&) {  // of the unit
+    }
+    throw UsageError(fmt::format("{}: \"{}\" is no amount of memory; write as 512MB or 4GB", option, text));
 }
 
 void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {

@@ -237,6 +237,7 @@ TEST(Mips, WhatTheCommandLineAloneShowsToBeWrongIsExitCode2) {
              {"mips --batch in", "OUTDIR"},
              {"mips --batch in out --format png", "ktx2 or dds"},
              {"mips --batch in out --cube", "--cube"},
+             {"mips --batch in out --memory 4X", "4X"},
          })
         EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;
     EXPECT_TRUE(shell.files().empty());
