@@ -10,13 +10,16 @@
 #include <cstdio>
 #include <new>
 
+#include "apps/command.h"
 #include "apps/common.h"
 
+namespace bandlimit::app { void add_audit(Program& program); }
 namespace {
 
 using namespace bandlimit;
 
 extern "C" void stop(int signal_number) {
+    app::abandon_commands();
     remove_unfinished_files();
     std::signal(signal_number, SIG_DFL);
     std::raise(signal_number);
@@ -95,6 +98,7 @@ int main(int argc, char** argv) {
     app::add_pattern(program);
     app::add_compare(program);
     app::add_analyze(program);
+    app::add_audit(program);
     app::add_info(program);
     app::add_tour(program);
     app::require_one_subcommand(program.cli, "verb");

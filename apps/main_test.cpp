@@ -6,7 +6,7 @@
 namespace bandlimit {
 namespace {
 
-const std::array verbs{"resize", "mips", "pattern", "compare", "analyze", "info", "tour"};
+const std::array verbs{"resize", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
 const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
                        "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
 
@@ -24,7 +24,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
         std::string line, word;
     };
     for (const auto& [line, word] : {
-             Case{"", "resize, mips, pattern, compare, analyze, info, tour"},
+             Case{"", "resize, mips, pattern, compare, analyze, audit, info, tour"},
              {"frob", "\"frob\" is no verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},
@@ -78,6 +78,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
              {"analyze tent --rows 0", "--rows"},
              {"analyze jinc2 --from 4 --to 2", "radial"},
              {"analyze tent --plot out.bmp", ".svg or .png"},
+             {"audit", "COMMAND"},
              {"tour", "DIR"},
          })
         EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;

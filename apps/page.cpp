@@ -55,8 +55,10 @@ Page::Page(std::string title, std::string introduction)
 void Page::section(const std::string& title, const std::string& text, const Citation& source) {
     ++sections_;
     contents_ += fmt::format("<li><a href=\"#s{}\">{}</a></li>\n", sections_, escaped(title));
-    body_ += fmt::format("<h2 id=\"s{}\">{}. {}</h2>\n<p>{}</p>\n<p class=\"source\">After {}, <i>{}</i>, {}{}.</p>\n",
-                         sections_, sections_, escaped(title), escaped(text), escaped(source.author),
+    body_ +=
+        fmt::format("<h2 id=\"s{}\">{}. {}</h2>\n<p>{}</p>\n", sections_, sections_, escaped(title), escaped(text));
+    if (source.author.empty()) return;
+    body_ += fmt::format("<p class=\"source\">After {}, <i>{}</i>, {}{}.</p>\n", escaped(source.author),
                          escaped(source.title), escaped(source.place), source.year.empty() ? "" : ", " + source.year);
 }
 

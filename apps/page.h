@@ -15,7 +15,7 @@ class Page {
 public:
     explicit Page(std::string title, std::string introduction);
 
-    /// Starts a part: everything until the next one belongs to it.
+    /// Starts a part: everything until the next one belongs to it. Without an author it names no source.
     void section(const std::string& title, const std::string& text, const Citation& source);
     /// A picture with one sentence and the command that makes it (none if empty). `width` in CSS pixels.
     void figure(const std::string& file, const std::string& sentence, const std::string& command, int width);

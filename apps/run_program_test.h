@@ -47,9 +47,18 @@ struct Circumstances {
     std::function<bool(pid_t)> meanwhile = {};
 };
 
+/// The words of a line as a shell takes it apart: by blanks, but not between single quotes.
 inline std::vector<std::string> words_of(const std::string& line) {
-    std::istringstream in(line);
-    return {std::istream_iterator<std::string>(in), {}};
+    std::vector<std::string> words;
+    bool in_word = false, in_quotes = false;
+    for (const char c : line) {
+        if (c == '\'') in_quotes = !in_quotes;
+        const bool ends = c == ' ' && !in_quotes;
+        if (!ends && !in_word) words.emplace_back();
+        in_word = !ends;
+        if (in_word && c != '\'') words.back() += c;
+    }
+    return words;
 }
 
 /// A folder in which the program runs.
