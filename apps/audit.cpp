@@ -220,7 +220,6 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_audit(Program& program);
 void add_audit(Program& program) {
     auto o = std::make_shared<Options>();
     CLI::App* verb = program.add_verb(
