@@ -30,10 +30,11 @@ struct Item {
     std::string input, output;  ///< relative to the directories
     bool is_left_out = false, is_current = false;
     std::string error;  ///< why it failed, or ""
+    std::vector<std::string> notes;
     MipsJob job;
     RoleChoice role;
-    std::map<std::string, std::string> hashes;  ///< of all that it is made of
-    std::string options;                        ///< all that decides how
+    std::map<std::string, std::string> sources, hashes;  ///< paths and content of all that is read, by short names
+    std::string options;                                 ///< all that decides how it is made
     MipsCost cost;
 
     bool is_due() const { return !is_left_out && !is_current && error.empty(); }
@@ -60,7 +61,7 @@ std::vector<std::string> pictures_below(const fs::path& root, const fs::path& ou
             std::error_code ignored;
             const bool is_passed = is_hidden(*entry) || (entry->is_directory() && fs::equivalent(*entry, out, ignored));
             if (is_passed && entry->is_directory()) entry.disable_recursion_pending();
-            if (!is_passed && is_picture(*entry) && !entry->is_directory())
+            if (!is_passed && is_picture(*entry) && entry->is_regular_file(ignored))
                 pictures.push_back(entry->path().lexically_relative(root).generic_string());
         }
     } catch (const fs::filesystem_error& e) {
@@ -81,7 +82,7 @@ std::string options_text(const MipsRecipe& r, Role role) {
     return fmt::format(
         "bandlimit {}, role {}, threshold {}, filter {}, from {}, edge {},{}, levels {}, space {}, "
         "depth {}, channels {}{}{}",
-        BANDLIMIT_VERSION, name_of(role), r.alpha_threshold.value_or(0), r.filter,
+        BANDLIMIT_VERSION, name_of(role), r.alpha_threshold.value_or(0), is_taps_file(r.filter) ? "taps" : r.filter,
         r.from == MipSource::base ? "base" : "previous", edge(r.edge_x), edge(r.edge_y), r.levels, name_of(r.space),
         r.depth ? name_of(*r.depth) : "default", r.channels, r.two_channel ? ", two-channel" : "",
         r.premultiplied ? ", premultiplied" : "");
@@ -96,11 +97,21 @@ MipsRecipe fitting(MipsRecipe recipe, Role role) {
     return recipe;
 }
 
+/// Where what a texture is made of lies, by names that do not depend on where the program runs.
+std::map<std::string, std::string> sources_of(const BatchJob& batch, const Item& item) {
+    const MipsRecipe& recipe = item.job.recipe;
+    std::map<std::string, std::string> sources{{item.input, item.job.inputs.front()}};
+    if (!recipe.normal.empty())
+        sources[fs::path(recipe.normal).lexically_relative(batch.in).generic_string()] = recipe.normal;
+    if (is_taps_file(recipe.filter)) sources["taps"] = recipe.filter;
+    return sources;
+}
+
 /// The jobs of all pictures, and what is wrong with them by their names alone.
 std::vector<Item> items_of(const BatchJob& batch) {
     const std::vector<Rule> rules = batch.rules.empty() ? std::vector<Rule>{} : read_rules(batch.rules);
     std::vector<Item> items;
-    std::map<std::string, std::string> sources;  // by output
+    std::map<std::string, std::string> makers;  // by output
     for (const std::string& input : pictures_below(batch.in, batch.out)) {
         Item item;
         item.input = input;
@@ -115,10 +126,11 @@ std::vector<Item> items_of(const BatchJob& batch) {
         item.job.recipe.role = item.role.role;
         item.job.recipe = fitting(item.job.recipe, item.role.role);
         item.options = options_text(item.job.recipe, item.role.role);
+        item.sources = sources_of(batch, item);
         if (!item.is_left_out)
-            if (const auto [source, is_new] = sources.try_emplace(item.output, input); !is_new)
+            if (const auto [maker, is_new] = makers.try_emplace(item.output, input); !is_new)
                 item.error = fmt::format("{}: {} makes the same file; rename one of them, or leave one out by a rule",
-                                         item.job.output, file_of(batch.in, source->second));
+                                         item.job.output, file_of(batch.in, maker->second));
         items.push_back(std::move(item));
     }
     return items;
@@ -126,11 +138,8 @@ std::vector<Item> items_of(const BatchJob& batch) {
 
 /// Reads what decides whether the texture must be made, and what that will take.
 void examine(Item& item, const Manifest& manifest) {
-    const MipsRecipe& recipe = item.job.recipe;
     try {
-        item.hashes[item.input] = hash_of_file(item.job.inputs.front());
-        if (!recipe.normal.empty()) item.hashes[recipe.normal] = hash_of_file(recipe.normal);
-        if (recipe.filter.ends_with(".json")) item.hashes[recipe.filter] = hash_of_file(recipe.filter);
+        for (const auto& [name, path] : item.sources) item.hashes[name] = hash_of_file(path);
         item.is_current = manifest.is_current(item.output, item.hashes, item.options);
         if (!item.is_current) item.cost = cost_of(item.job);
     } catch (const std::exception& e) {
@@ -243,7 +252,7 @@ private:
             if (error)
                 fail_file(item.job.output, "the directory ", folder.string(), " cannot be created: ", error.message(),
                           "; choose another place");
-            make_texture(item.job, {turn.threads});
+            item.notes = notes_of(make_texture(item.job, {turn.threads}), item.input);
         } catch (const std::bad_alloc&) {
             item.error = item.job.inputs.front() + ": memory is exhausted; close other programs, or pass --threads 1";
         } catch (const std::exception& e) {
@@ -283,6 +292,12 @@ private:
     std::exception_ptr failure_;
 };
 
+/// Why a picture failed, without its name where the reason begins with it.
+std::string reason_of(const Item& item) {
+    const std::string name = item.job.inputs.front() + ": ";
+    return item.error.starts_with(name) ? item.error.substr(name.size()) : item.error;
+}
+
 BatchReport report_of(const std::vector<Item>& items) {
     BatchReport report;
     for (const Item& item : items) {
@@ -291,10 +306,11 @@ BatchReport report_of(const std::vector<Item>& items) {
         } else if (item.is_current) {
             ++report.skipped;
         } else if (!item.error.empty()) {
-            report.failed.push_back({item.input, item.error});
+            report.failed.push_back({item.input, reason_of(item)});
         } else {
             ++report.made;
             ++report.roles[std::string(name_of(item.role.role))];
+            report.notes.insert(report.notes.end(), item.notes.begin(), item.notes.end());
             report.pixels += item.cost.pixels;
         }
     }
@@ -312,7 +328,7 @@ std::vector<PlannedFile> plan_batch(const BatchJob& batch) {
                         : item.is_current ? "up to date"
                         : fails           ? "fail"
                                           : "make",
-                        std::string(name_of(item.role.role)), fails ? item.error : item.role.because});
+                        std::string(name_of(item.role.role)), fails ? reason_of(item) : item.role.because});
     }
     return plan;
 }

@@ -34,6 +34,7 @@ struct BatchReport {
     };
     int made = 0, skipped = 0, left_out = 0;
     std::vector<Failure> failed;
+    std::vector<std::string> notes;    ///< what the user should know about those made
     std::map<std::string, int> roles;  ///< of those made
     std::uint64_t pixels = 0;          ///< of level 0 of those made
     double seconds = 0;

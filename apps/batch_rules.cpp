@@ -93,7 +93,7 @@ Setting flag_setting(const json& value, const fs::path&) {
 /// A taps.json lies where the rules say, as seen from their own folder.
 Setting filter_setting(const json& value, const fs::path& folder) {
     std::string filter = value_of<std::string>(value);
-    if (filter.ends_with(".json")) filter = (folder / filter).string();
+    if (is_taps_file(filter)) filter = (folder / filter).string();
     return [filter](MipsRecipe& recipe) { set_filter(recipe, filter); };
 }
 
@@ -176,8 +176,7 @@ Rule read_rule(const json& object, const fs::path& folder, const std::string& na
     }
     try {
         check_rule(rule);
-        MipsRecipe recipe = apply(rule, {}, "", rule.match);
-        if (!rule.normal.empty() && !recipe.role) recipe.role = Role::roughness;
+        const MipsRecipe recipe = apply(rule, {}, "", rule.match);
         if (recipe.role) check_recipe(recipe, *recipe.role);
     } catch (const std::exception& e) {
         fail_file(name, e.what());
@@ -231,6 +230,7 @@ const Rule* rule_for(const std::vector<Rule>& rules, std::string_view path) {
 MipsRecipe apply(const Rule& rule, MipsRecipe recipe, const std::string& root, const std::string& path) {
     for (const Setting& set : rule.settings) set(recipe);
     if (rule.normal.empty()) return recipe;
+    if (!recipe.role) recipe.role = Role::roughness;
     std::string name = rule.normal;
     if (const std::size_t star = name.find('*'); star != std::string::npos)
         name.replace(star, 1, star_of(rule.match, path));

@@ -30,7 +30,8 @@ std::set<std::string> files_below(const std::string& folder) {
 std::map<std::string, json> plan_of(const Outcome& run) {
     std::map<std::string, json> plan;
     EXPECT_EQ(run.code, 0) << run;
-    for (const json& file : run.json()["plan"]) plan[file["file"]] = file;
+    const json report = run.json();
+    for (const json& file : report["plan"]) plan[file["file"]] = file;
     return plan;
 }
 
@@ -163,9 +164,10 @@ TEST(Batch, ThreadsAndMemoryDoNotChangeTheFiles) {
     EXPECT_EQ(files.size(), 13u);
     for (const std::string other : {"three", "little"}) {
         EXPECT_EQ(files_below(shell / other), files);
-        for (const std::string& file : files)
-            if (file != manifest_name)
-                EXPECT_EQ(bytes_of(shell / ("one/" + file)), bytes_of(shell / (other + "/" + file))) << file;
+        for (const std::string& file : files) {
+            if (file == manifest_name) continue;
+            EXPECT_EQ(bytes_of(shell / ("one/" + file)), bytes_of(shell / (other + "/" + file))) << file;
+        }
     }
 }
 

@@ -11,13 +11,22 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-    std::vector<std::string> files;  ///< IN... OUT
+    std::vector<std::string> files;               ///< IN... OUT
+    std::vector<CLI::Option*> of_levels, of_one;  ///< options that --keep-levels, or --batch, does not take
     MipsJob job;
     bool is_batch = false;
     BatchJob batch;
     Parallel parallel;
     bool json = false;
 };
+
+/// Throws UsageError if one of these options was given.
+void refuse(const std::vector<CLI::Option*>& options, const std::string& by, const std::string& reason) {
+    for (const CLI::Option* option : options)
+        if (option->count() > 0)
+            throw UsageError(
+                fmt::format("{} does not go with {}: {}; leave one of them out", option->get_name(), by, reason));
+}
 
 /// Splits the files into inputs and output, and checks what the command line alone shows.
 void check(Options& o) {
@@ -28,7 +37,9 @@ void check(Options& o) {
         throw UsageError(fmt::format("mips --batch: {} directories; give DIR and OUTDIR", o.files.size()));
     o.job.output = o.files.back();
     o.job.inputs.assign(o.files.begin(), o.files.end() - 1);
+    if (o.job.keep_levels) refuse(o.of_levels, "--keep-levels", "levels are copied as they are");
     if (!o.is_batch) return check_job(o.job);
+    refuse(o.of_one, "--batch", "every picture makes a texture of its own");
     o.batch.in = o.files.front(), o.batch.out = o.files.back();
     o.batch.recipe = o.job.recipe;
     o.batch.parallel = o.parallel;
@@ -43,9 +54,7 @@ void note_choices(const MipsJob& job, const MipsReport& report) {
         note(fmt::format("{} has the role {}, because {}; --role chooses another", path, name_of(report.role->role),
                          report.role->because.empty() ? "its name says nothing else"
                                                       : "its name holds \"" + report.role->because + "\""));
-    if (report.has_foreign_profile)
-        note(fmt::format("{} has an ICC profile that is not sRGB: its curve is treated as sRGB", path));
-    if (report.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", path));
+    for (const std::string& text : notes_of(report, path)) note(text);
 }
 
 ordered_json levels_json(const MipsReport& report) {
@@ -116,7 +125,9 @@ void print(const Options& o, const MipsReport& r) {
 
 void run_one(const Options& o) {
     const Stopwatch watch;
-    const MipsReport report = make_texture(o.job, o.parallel);
+    MipsJob job = o.job;
+    job.shows_progress = true;
+    const MipsReport report = make_texture(job, o.parallel);
     note_choices(o.job, report);
     if (o.json) print_json(report_of(o, report, watch.total()));
     else print(o, report);
@@ -125,10 +136,9 @@ void run_one(const Options& o) {
 ordered_json report_of(const BatchReport& r) {
     ordered_json failed = ordered_json::array();
     for (const BatchReport::Failure& f : r.failed) failed.push_back({{"file", f.file}, {"error", f.error}});
-    return {{"files", r.files()},   {"made", r.made},
-            {"skipped", r.skipped}, {"left_out", r.left_out},
-            {"failed", failed},     {"roles", r.roles},
-            {"seconds", r.seconds}, {"megapixels_per_second", r.megapixels_per_second()}};
+    return {{"files", r.files()},     {"made", r.made},       {"skipped", r.skipped},
+            {"left_out", r.left_out}, {"failed", failed},     {"notes", r.notes},
+            {"roles", r.roles},       {"seconds", r.seconds}, {"megapixels_per_second", r.megapixels_per_second()}};
 }
 
 void print(const BatchReport& r) {
@@ -139,12 +149,13 @@ void print(const BatchReport& r) {
     fmt::print("\n");
     for (const auto& [role, count] : r.roles) fmt::print("  {:<13} {:>6}\n", role, count);
     if (!r.failed.empty()) fmt::print("failed:\n");
-    for (const BatchReport::Failure& f : r.failed) fmt::print("  {}\n    {}\n", f.file, f.error);
+    for (const BatchReport::Failure& f : r.failed) fmt::print("  {}: {}\n", f.file, f.error);
 }
 
 void print(const std::vector<PlannedFile>& plan) {
     for (const PlannedFile& file : plan)
-        fmt::print("{:<11} {:<13} {:<14} {}\n", file.state, file.role, file.because, file.input);
+        fmt::print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
+                   file.because.empty() ? "" : " (" + file.because + ")");
 }
 
 ordered_json report_of(const std::vector<PlannedFile>& plan) {
@@ -164,6 +175,7 @@ void run_many(const Options& o) {
         return o.json ? print_json(report_of(plan)) : print(plan);
     }
     const BatchReport report = run_batch(o.batch);
+    for (const std::string& text : report.notes) note(text);
     o.json ? print_json(report_of(report)) : print(report);
     if (!report.failed.empty())
         throw std::runtime_error(fmt::format("{} of {} pictures failed; mend those that are listed, and run this again",
@@ -180,7 +192,7 @@ CLI::Option* add_setter(CLI::App* verb, const std::shared_ptr<Options>& o, const
         ->type_name(type);
 }
 
-/// The options that say how levels are made. Returns those that mean nothing where levels are only copied.
+/// Adds the options that say how levels are made, and returns them.
 std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Options>& o) {
     MipsRecipe& recipe = o->job.recipe;
     std::vector<CLI::Option*> options;
@@ -230,12 +242,21 @@ std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Optio
     return options;
 }
 
-void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o, const std::vector<CLI::Option*>& of_one_texture) {
+/// "512MB", "4G": a number with a unit of 1024 or its powers. Throws UsageError, naming the option.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+    std::string bytes = text;
+    try {
+        if (CLI::AsSizeValue(false)(bytes).empty() && parse_number(option, bytes) >= 1) return std::stoull(bytes);
+    } catch (const CLI::Error&) {  // of the unit
+    }
+    throw UsageError(fmt::format("{}: \"{}\" is no amount of memory; write as 512MB or 4GB", option, text));
+}
+
+void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {
     CLI::Option* batch = verb->add_flag(
         "--batch", o->is_batch,
         "Make a texture of every image below DIR, at the same place below OUTDIR, in files of --format;\n"
         "what is up to date is skipped, by content, and what fails does not stop the others");
-    for (CLI::Option* option : of_one_texture) option->excludes(batch);
     verb->add_option_function<std::string>(
             "--format",
             [o](const std::string& s) {
@@ -250,10 +271,10 @@ void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o, const std::vec
                      "Which pictures of a batch have which role and options: a JSON file, see docs/batch.md")
         ->needs(batch)
         ->type_name("FILE");
-    verb->add_option("--memory", o->batch.memory,
-                     "Memory for the pictures of a batch that are worked on at a time, as 4GB; default: a quarter of\n"
-                     "what is available; one picture is always worked on")
-        ->transform(CLI::AsSizeValue(false))
+    verb->add_option_function<std::string>(
+            "--memory", [o](const std::string& s) { o->batch.memory = parse_bytes("--memory", s); },
+            "Memory for the pictures of a batch that are worked on at a time, as 4GB; default: a quarter of\n"
+            "what is available; one picture is always worked on")
         ->needs(batch)
         ->type_name("SIZE");
     verb->add_flag("--dry-run", o->batch.is_dry, "Show what --batch would do, with the roles it guesses, and stop")
@@ -273,16 +294,16 @@ void add_mips(Program& program) {
                      "IN... OUT: images or textures (their level 0) to read, and a .ktx2 or .dds file to write, or\n"
                      "images, one per level, with %d for its number: wall_%d.png. With --batch: DIR OUTDIR")
         ->required();
-    std::vector<CLI::Option*> recipe = add_recipe(verb, o);
+    o->of_levels = add_recipe(verb, o);
     CLI::Option* cube = verb->add_flag("--cube", o->job.is_cube,
                                        "Six inputs are the faces +x -x +y -y +z -z of a cube map, filtered across "
                                        "their edges");
     CLI::Option* array = verb->add_flag("--array", o->job.is_array, "The inputs, of equal size, are layers");
     CLI::Option* keep = verb->add_flag("--keep-levels", o->job.keep_levels,
                                        "Copy the levels of a texture as they are, into another kind of file");
-    for (CLI::Option* option : recipe) keep->excludes(option);
-    keep->excludes(cube)->excludes(array);
-    add_batch(verb, o, {cube, array, keep, recipe[1]});
+    o->of_levels.insert(o->of_levels.end(), {cube, array});
+    o->of_one = {cube, array, keep, verb->get_option("--normal")};
+    add_batch(verb, o);
     add_threads(verb, o->parallel)->description("Most threads to keep busy; 0 (default): one per core");
     add_json(verb, o->json);
     add_quiet(verb);

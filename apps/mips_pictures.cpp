@@ -7,14 +7,6 @@
 namespace bandlimit::app {
 namespace {
 
-Encoding encoding_of_image(const ImageInfo& info, Role role, Space space) {
-    if (space == Space::automatic && is_data(role)) space = Space::data;
-    if (space == Space::automatic && role == Role::color_linear) space = Space::linear;
-    Encoding encoding = info.encoding(space);
-    if (is_data(role)) encoding.alpha = -1;
-    return encoding;
-}
-
 Encoding encoding_of_texture(const TexelFormat& format, Role role, Space space) {
     Encoding encoding = encoding_of(format, is_data(role) || space == Space::data);
     if (space == Space::srgb) encoding.transfer = Transfer::srgb;
@@ -23,6 +15,14 @@ Encoding encoding_of_texture(const TexelFormat& format, Role role, Space space) 
 }
 
 }  // namespace
+
+Encoding encoding_of_image(const ImageInfo& info, Role role, Space space) {
+    if (space == Space::automatic && is_data(role)) space = Space::data;
+    if (space == Space::automatic && role == Role::color_linear) space = Space::linear;
+    Encoding encoding = info.encoding(space);
+    if (is_data(role)) encoding.alpha = -1;
+    return encoding;
+}
 
 PictureInfo picture_info(const std::string& path) {
     PictureInfo info;

@@ -31,6 +31,9 @@ struct PictureInfo {
 /// throws  std::runtime_error with the path
 PictureInfo picture_info(const std::string& path);
 
+/// What the codes of an image mean: what `space` says, or else the role together with the file.
+Encoding encoding_of_image(const ImageInfo& info, Role role, Space space);
+
 /// Appends the pictures of `path`: one of an image, level 0 of every layer and face of a texture. What codes mean is
 /// what `space` says, or else the role together with the file.
 /// throws  std::runtime_error with the path

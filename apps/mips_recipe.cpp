@@ -6,11 +6,8 @@
 #include "bandlimit/io/taps_json.h"
 
 namespace bandlimit::app {
-namespace {
 
 bool is_taps_file(const std::string& filter) { return filter.ends_with(".json"); }
-
-}  // namespace
 
 void set_role(MipsRecipe& recipe, const std::string& text) {
     recipe.role = text == "auto" ? std::nullopt : std::optional(parse_role(text));

@@ -31,6 +31,9 @@ void set_edge(MipsRecipe& recipe, const std::string& text);    ///< "wrap", or "
 void set_threshold(MipsRecipe& recipe, double threshold);
 void set_channels(MipsRecipe& recipe, int channels);
 
+/// Whether a filter is the path of a taps.json.
+bool is_taps_file(const std::string& filter);
+
 /// Whether samples of this role are no colours: never decoded unless asked, and alpha is a channel like the others.
 bool is_data(Role role);
 

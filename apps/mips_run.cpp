@@ -8,6 +8,7 @@
 #include "apps/common.h"
 #include "apps/level_images.h"
 #include "apps/mips_pictures.h"
+#include "apps/mips_stream.h"
 #include "apps/texture_file.h"
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/texture/alpha_coverage.h"
@@ -203,30 +204,32 @@ double coverage_of(const std::vector<AnyImage>& images, const MipsReport::Level&
 }
 
 /// What the levels are, before they are written.
-std::vector<MipsReport::Level> levels_of(const Texture& texture, const MipsJob& job, std::optional<double> threshold) {
+std::vector<MipsReport::Level> levels_of(const TextureShape& shape, const MipsJob& job) {
     const bool has_files = !container_of_path(job.output);
     std::vector<MipsReport::Level> levels;
-    for (const std::vector<AnyImage>& images : texture.levels) {
-        const int level = static_cast<int>(levels.size());
-        MipsReport::Level l;
-        l.width = mip_length(texture.width(), level), l.height = mip_length(texture.height(), level);
-        l.bytes = static_cast<std::uint64_t>(l.width) * static_cast<std::uint64_t>(l.height) * images.size() *
-                  static_cast<std::uint64_t>(texture.format.channels) * size_of(texture.format.depth);
+    for (int level = 0; level < shape.levels; ++level) {
+        MipsReport::Level& l = levels.emplace_back();
+        l.width = mip_length(shape.width, level), l.height = mip_length(shape.height, level);
+        l.bytes = shape.image_bytes(level) * static_cast<std::uint64_t>(shape.layers * shape.faces());
         if (has_files) l.file = path_of_level(job.output, level);
-        if (threshold) l.coverage = coverage_of(images, l, *threshold);
-        levels.push_back(l);
     }
     return levels;
 }
 
-/// Writes `texture`, and fills in what became of it.
+/// Fills in what is made, in a container unless `images` says how images store it.
+void describe(const TextureShape& shape, const MipsJob& job, const std::optional<LevelFormat>& images,
+              MipsReport& report) {
+    report.layers = shape.layers, report.faces = shape.faces();
+    report.channels = images ? images->channels : shape.format.channels;
+    report.depth = images ? images->depth : shape.format.depth;
+    report.is_srgb = images ? images->transfer == Transfer::srgb : shape.format.srgb;
+    report.is_premultiplied = !images && shape.format.premultiplied;
+    report.levels = levels_of(shape, job);
+}
+
+/// Writes `texture`.
 void write(const MipsJob& job, const Texture& texture, const std::optional<LevelFormat>& images, int threads,
            MipsReport& report) {
-    report.layers = texture.layers, report.faces = texture.faces();
-    report.channels = images ? images->channels : texture.format.channels;
-    report.depth = images ? images->depth : texture.format.depth;
-    report.is_srgb = images ? images->transfer == Transfer::srgb : texture.format.srgb;
-    report.is_premultiplied = !images && texture.format.premultiplied;
     if (images) {
         write_level_images(job.output, texture, *images, threads);
         report.format = abilities_of(job.output).name;
@@ -252,13 +255,36 @@ MipsReport copy_levels(const MipsJob& job, int threads) {
         images = LevelFormat{texture.format.channels, nearest_depth(abilities_of(job.output), texture.format.depth),
                              texture.format.srgb ? Transfer::srgb : Transfer::linear, !texture.format.srgb};
     }
-    report.levels = levels_of(texture, job, {});
+    describe(texture.shape(), job, images, report);
     watch.time(report.write, [&] { write(job, texture, images, threads, report); });
     return report;
 }
 
+/// Whether the levels can be made while the one picture is read.
+bool goes_by_rows(const MipsJob& job, const Inputs& in, const TexelFormat& texels, const MipOptions& options) {
+    return container_of_path(job.output) && in.infos.size() == 1 && !in.infos.front().texture &&
+           in.channels <= texels.channels && MipStream::is_possible(options, in.channels);
+}
+
+/// The same as make_texture(), by rows.
+void make_by_rows(const MipsJob& job, const TexelFormat& texels, const MipOptions& options, Parallel parallel,
+                  MipsReport& report) {
+    const Shares shares = shares_of(parallel);
+    ImageReader reader(job.inputs.front(), shares.codecs.threads);
+    const ImageInfo& info = reader.info();
+    const MipsStreamReport stream =
+        stream_texture(reader, encoding_of_image(info, options.role, job.recipe.space), texels, options, job.output,
+                       *container_of_path(job.output), shares.stages, job.shows_progress);
+    TextureShape shape{texels, info.width, info.height};
+    shape.levels = options.levels > 0 ? options.levels : mip_count(info.width, info.height);
+    describe(shape, job, {}, report);
+    report.format = texture_info(job.output).format;
+    report.lost_non_finite = stream.lost_non_finite;
+    report.read += stream.read, report.filter = stream.filter, report.write = stream.write;
+}
+
 /// Pictures, texture, and what is between them: levels as floats, a row of them or all, and the moments of normals.
-MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& recipe) {
+MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& recipe, bool by_rows) {
     const auto pixels = static_cast<std::uint64_t>(in.width) * static_cast<std::uint64_t>(in.height);
     const auto images = static_cast<std::uint64_t>(in.layers) * static_cast<std::uint64_t>(in.faces);
     const std::uint64_t source = static_cast<std::uint64_t>(in.channels) * size_of(in.depth);
@@ -266,6 +292,11 @@ MipsCost cost_of(const Inputs& in, const TexelFormat& texels, const MipsRecipe& 
     const std::uint64_t floats = sizeof(float) * static_cast<std::uint64_t>(texels.channels * in.faces);
     const std::uint64_t moments = recipe.normal.empty() ? 0 : 8 * sizeof(float);
     constexpr std::uint64_t codec = 32 << 20;
+    if (by_rows) {  // bands of the picture and of the levels, as stream_texture() says
+        const int most = recipe.edge_y == Edge::wrap ? in.height : 600;  // the first rows need the last ones
+        const auto rows = static_cast<std::uint64_t>(std::min(in.height, most));
+        return {pixels, rows * static_cast<std::uint64_t>(in.width) * (source + stored + floats) + codec};
+    }
     return {pixels * images, pixels * (images * (source + stored + stored / 3 + 1) + floats + moments) + codec};
 }
 
@@ -306,10 +337,20 @@ void check_job(const MipsJob& job) {
     refuse(job.recipe.premultiplied, "--premultiplied");
 }
 
+std::vector<std::string> notes_of(const MipsReport& report, const std::string& path) {
+    std::vector<std::string> notes;
+    if (report.has_foreign_profile)
+        notes.push_back(path + " has an ICC profile that is not sRGB: its curve is treated as sRGB");
+    if (report.lost_non_finite) notes.push_back(path + " holds NaN or infinite values; they became 0");
+    return notes;
+}
+
 MipsCost cost_of(const MipsJob& job) {
     const Inputs in = inputs_of(job);
     const RoleChoice choice = choose_role(job.recipe, job.inputs.front(), in.is_linear);
-    return cost_of(in, target_of(job, in, choice.role).texels, job.recipe);
+    const Target target = target_of(job, in, choice.role);
+    return cost_of(in, target.texels, job.recipe,
+                   goes_by_rows(job, in, target.texels, options_of(job.recipe, choice.role)));
 }
 
 MipsReport make_texture(const MipsJob& job, Parallel parallel) {
@@ -327,10 +368,16 @@ MipsReport make_texture(const MipsJob& job, Parallel parallel) {
         fail_file(job.inputs.front(), "holds ", in.layers * in.faces,
                   " layers and faces, and an image holds one; write a .ktx2 or .dds file");
     const Target target = target_of(job, in, role);
-    require_memory(cost_of(in, target.texels, job.recipe).bytes,
+    MipOptions options = options_of(job.recipe, role);
+    report.filter_x = name_of(options.filter, in.width), report.filter_y = name_of(options.filter, in.height);
+    report.edge_x = options.edge_x, report.edge_y = options.edge_y;
+    if (goes_by_rows(job, in, target.texels, options)) {
+        make_by_rows(job, target.texels, options, parallel, report);
+        return report;
+    }
+    require_memory(cost_of(in, target.texels, job.recipe, false).bytes,
                    fmt::format("making the levels of {} x {} texels", in.width, in.height));
 
-    MipOptions options = options_of(job.recipe, role);
     std::vector<Picture> pictures, normals;
     watch.time(report.read, [&] {
         for (const std::string& path : job.inputs)
@@ -339,13 +386,14 @@ MipsReport make_texture(const MipsJob& job, Parallel parallel) {
             read_pictures(job.recipe.normal, Role::normal, Space::automatic, parallel.threads, normals);
     });
     if (!normals.empty()) options.normals = samples_of(normals.front(), 4, Role::normal);
-    report.filter_x = name_of(options.filter, in.width), report.filter_y = name_of(options.filter, in.height);
-    report.edge_x = options.edge_x, report.edge_y = options.edge_y;
     const Texture texture = watch.time(report.filter, [&] {
         return filter(job, in, std::move(pictures), target.texels, options, parallel, report.lost_non_finite);
     });
-    report.levels =
-        levels_of(texture, job, role == Role::alpha_tested ? std::optional(options.alpha_threshold) : std::nullopt);
+    describe(texture.shape(), job, target.images, report);
+    if (role == Role::alpha_tested)
+        for (std::size_t level = 0; level < report.levels.size(); ++level)
+            report.levels[level].coverage =
+                coverage_of(texture.levels[level], report.levels[level], options.alpha_threshold);
     watch.time(report.write, [&] { write(job, texture, target.images, parallel.threads, report); });
     return report;
 }

@@ -16,7 +16,8 @@ struct MipsJob {
     std::vector<std::string> inputs;
     std::string output;  ///< .ktx2, .dds, or images of a pattern, "name_%d.png"
     bool is_cube = false, is_array = false;
-    bool keep_levels = false;  ///< copy the levels of the one texture that is read; the recipe has no say
+    bool shows_progress = false;  ///< on a terminal
+    bool keep_levels = false;     ///< copy the levels of the one texture that is read; the recipe has no say
     MipsRecipe recipe;
 };
 
@@ -43,6 +44,9 @@ struct MipsReport {
     bool has_foreign_profile = false;        ///< an ICC profile that is not sRGB; its curve was treated as sRGB
     double read = 0, filter = 0, write = 0;  ///< seconds
 };
+
+/// What the user should know about the picture `path` that became this.
+std::vector<std::string> notes_of(const MipsReport& report, const std::string& path);
 
 /// Reads, filters, writes. Whatever fails, nothing of the output appears.
 ///

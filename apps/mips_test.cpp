@@ -205,6 +205,7 @@ TEST(Mips, CoverageAndRoughnessNeedTheirOptions) {
     EXPECT_GT(roughness_at_level_1("--normal bumps.png"), 60);
 }
 
+// A start of the program takes a while: one mistake of each kind.
 TEST(Mips, WhatTheCommandLineAloneShowsToBeWrongIsExitCode2) {
     const Shell shell(BANDLIMIT_PROGRAM);
     const std::string mips = "mips in.png out.ktx2 ";
@@ -216,33 +217,27 @@ TEST(Mips, WhatTheCommandLineAloneShowsToBeWrongIsExitCode2) {
              {"mips in.png", "IN and OUT"},
              {"mips in.png out.png", "%d"},
              {"mips in.png out_%d_%d.png", "twice"},
-             {"mips in.png out_%d.xyz", "png, jpg, tif, exr"},
-             {"mips in.png out_%d.jpg --depth u16", "--depth"},
              {"mips in.png out_%d.png --channels 1", "--channels"},
              {"mips a.png b.png out.ktx2", "--array or --cube"},
              {"mips a.png b.png out.ktx2 --cube", "six faces"},
-             {"mips a.png b.png out_%d.png --array", "--array"},
              {"mips a b c d e f out.dds --cube --edge wrap", "--edge"},
              {"mips a b c d e f out.dds --cube --role roughness --normal n.png", "--normal"},
              {mips + "--role colour", "color, color-linear, normal"},
              {mips + "--role color --normal n.png", "--role roughness"},
              {mips + "--role mask --two-channel", "--role normal"},
-             {mips + "--role height --premultiplied", "--premultiplied"},
              {mips + "--role color --space data", "--space data"},
-             {mips + "--alpha-threshold 0", "--alpha-threshold"},
              {mips + "--alpha-threshold nan", "--alpha-threshold"},
              {mips + "--role color --alpha-threshold 0.5", "--role alpha-tested"},
              {mips + "--filter none", "nearest, box, tent"},
              {mips + "--filter downsample8 --from base", "--from base"},
              {mips + "--edge wrap,mirror", "clamp, reflect, wrap"},
-             {mips + "--levels 0", "--levels"},
              {mips + "--channels 3", "1, 2 or 4"},
-             {mips + "--from above", "base or previous"},
              {mips + "--keep-levels --filter box", "--keep-levels"},
              {mips + "--rules rules.json", "--batch"},
              {"mips --batch in", "OUTDIR"},
              {"mips --batch in out --format png", "ktx2 or dds"},
              {"mips --batch in out --cube", "--cube"},
+             {"mips --batch in out --memory 4X", "4X"},
          })
         EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;
     EXPECT_TRUE(shell.files().empty());

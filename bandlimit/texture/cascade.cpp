@@ -7,7 +7,15 @@
 namespace bandlimit {
 namespace {
 
-constexpr int rows_per_thread = 96;  // of a block; the rows above it are decoded twice, and it shall stay in cache
+/// How many rows of a level are made at a time: enough for all threads, where the floats of level 1 then take no more
+/// than `most_bytes`. The fewer, the more of the rows above are decoded twice.
+int rows_per_block(int width, int channels, Parallel parallel) {
+    constexpr int per_thread = 96, least = 64;
+    constexpr std::int64_t most_bytes = 32 << 20;
+    const std::int64_t row = std::int64_t{mip_length(width, 1)} * channels * static_cast<std::int64_t>(sizeof(float));
+    const int rows = per_thread * parallel.count();
+    return rows * row > most_bytes ? least : rows;
+}
 
 }  // namespace
 
@@ -16,7 +24,7 @@ MipCascade::MipCascade(int width, int height, int channels, const Encoding& stor
     : stored_(stored),
       between_{Transfer::linear, stored.alpha, stored.associated || options.premultiply},
       parallel_(parallel),
-      block_(rows_per_thread * parallel.count()) {
+      block_(rows_per_block(width, channels, parallel)) {
     if (width < 1 || height < 1 || levels < 1 || levels > mip_count(width, height))
         fail("MipCascade: ", levels, " levels of ", width, " x ", height, "; pass a size of at least 1 x 1 and 1 to ",
              mip_count(std::max(width, 1), std::max(height, 1)), " levels");

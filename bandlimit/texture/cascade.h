@@ -14,7 +14,7 @@ namespace bandlimit {
 ///
 /// Levels stay linear, multiplied by alpha, unrounded: rounding to codes is never read again, and the rows have the
 /// bits of whole levels filtered one after another, for any number of threads.
-/// memory   per level some 200 of its rows as floats; under Edge::wrap the whole level
+/// memory   per level 200 to 600 of its rows as floats, of wide pictures 200; under Edge::wrap the whole level
 /// cost     a third more than level 1 alone
 class MipCascade {
 public:

@@ -1,4 +1,4 @@
-// Textures in files that graphics interfaces load: KTX2 and DDS, uncompressed.
+// Textures in files that graphics interfaces load: KTX2 and DDS, uncompressed. What others read: docs/containers.md.
 #pragma once
 #include <cstddef>
 #include <functional>

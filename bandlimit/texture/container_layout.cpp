@@ -51,6 +51,12 @@ void read_rows(const std::byte* from, const ContainerLayout& layout, Image<T>& i
     }
 }
 
+template <class Predicate>
+const NamedFormat* find_if(std::span<const NamedFormat> formats, Predicate is_it) {
+    const auto found = std::find_if(formats.begin(), formats.end(), is_it);
+    return found == formats.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 StoredTexels stored_texels(std::string_view order, Depth depth, bool srgb) {
@@ -59,11 +65,14 @@ StoredTexels stored_texels(std::string_view order, Depth depth, bool srgb) {
     return {{.channels = channels, .depth = depth, .srgb = srgb}, std::string(order)};
 }
 
+const NamedFormat* find_format(std::span<const NamedFormat> formats, std::uint32_t number) {
+    return find_if(formats, [&](const NamedFormat& f) { return f.number == number; });
+}
+
 const NamedFormat* find_format(std::span<const NamedFormat> formats, const StoredTexels& stored) {
-    const auto found = std::find_if(formats.begin(), formats.end(), [&](const NamedFormat& f) {
+    return find_if(formats, [&](const NamedFormat& f) {
         return f.order == stored.order && f.depth == stored.format.depth && f.srgb == stored.format.srgb;
     });
-    return found == formats.end() ? nullptr : &*found;
 }
 
 const NamedFormat* find_format(std::span<const NamedFormat> formats, const TexelFormat& format) {

@@ -29,9 +29,11 @@ struct NamedFormat {
     Depth depth;
     bool srgb = false;
 };
-/// The first of `formats` whose texels lie as `stored`; null if there is none.
+/// The one of `formats` with this number; null if there is none.
+const NamedFormat* find_format(std::span<const NamedFormat> formats, std::uint32_t number);
+/// The first whose texels lie as `stored`.
 const NamedFormat* find_format(std::span<const NamedFormat> formats, const StoredTexels& stored);
-/// As above, for texels of `format` in the order of their channels.
+/// The first for texels of `format` in the order of their channels.
 const NamedFormat* find_format(std::span<const NamedFormat> formats, const TexelFormat& format);
 
 /// All that a header says.

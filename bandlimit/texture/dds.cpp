@@ -62,15 +62,9 @@ constexpr std::uint32_t dx10 = code_of("DX10");
 
 // ---- reading
 
-const NamedFormat* format_of(std::uint32_t dxgi) {
-    const auto found =
-        std::find_if(formats.begin(), formats.end(), [&](const NamedFormat& f) { return f.number == dxgi; });
-    return found == formats.end() ? nullptr : &*found;
-}
-
 StoredTexels texels_of(const NamedFormat& format) { return stored_texels(format.order, format.depth, format.srgb); }
 
-/// "a four-character code", or its number where it is not written in letters.
+/// The letters of a four-character code, or its number where it has none.
 std::string written(std::uint32_t code) {
     std::string text;
     for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>(code >> shift & 0xff);
@@ -83,8 +77,8 @@ constexpr std::string_view advice = "which are not read; convert it to 8 or 16 b
 /// What a four-character code means: a DX10 header behind it, or a wide format.
 StoredTexels texels_by_code(const FileBytes& file, std::uint32_t code) {
     const auto old = std::find_if(old_numbers.begin(), old_numbers.end(), [&](OldNumber n) { return n.code == code; });
-    const NamedFormat* const format = code == dx10               ? format_of(file.u32(at_dxgi))
-                                      : old != old_numbers.end() ? format_of(old->dxgi)
+    const NamedFormat* const format = code == dx10               ? find_format(formats, file.u32(at_dxgi))
+                                      : old != old_numbers.end() ? find_format(formats, old->dxgi)
                                                                  : nullptr;
     if (format != nullptr) return texels_of(*format);
     if (code == dx10) fail_file(file.name, "has texels of DXGI_FORMAT ", file.u32(at_dxgi), ", ", advice);

@@ -23,7 +23,8 @@ const NamedFormat* dds_format(const TexelFormat& format);
 /// Plans a file for what check_container() accepts: layer by layer, face by face.
 ///
 /// The header is DX10's, but for the two formats that the older header can tell exactly and that older readers know by
-/// it alone: R8 and RGBA8, linear, straight, and no array.
+/// it alone: R8 and RGBA8, linear, straight, and no array. OpenImageIO 2.4, ffmpeg and Pillow read these; ImageMagick 6
+/// swaps red and blue of RGBA8, as of every file whose masks do not have blue first.
 ContainerPlan plan_dds(const TextureShape& shape);
 
 }  // namespace bandlimit

@@ -62,9 +62,8 @@ const NamedFormat& format_of(const FileBytes& file) {
         fail_file(file.name, "is supercompressed (",
                   supercompression < schemes.size() ? schemes[supercompression] : "an unknown scheme",
                   "), which is not read; unpack it first");
-    const auto found =
-        std::find_if(formats.begin(), formats.end(), [&](const NamedFormat& f) { return f.number == number; });
-    if (found == formats.end())
+    const NamedFormat* const found = find_format(formats, number);
+    if (found == nullptr)
         fail_file(file.name, "has texels of VkFormat ", number,
                   ", which are not read; convert it to 8 or 16 bits, half or float, uncompressed");
     return *found;
