@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {

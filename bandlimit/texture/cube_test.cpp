@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {

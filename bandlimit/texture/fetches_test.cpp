@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {

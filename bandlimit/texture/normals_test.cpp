@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {

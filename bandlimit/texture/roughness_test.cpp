@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bandlimit/texture/mips_test.h"
+#include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
 namespace {
