@@ -53,9 +53,18 @@ void copy_samples(const AnyConstView& from, const AnyView& to, Parallel parallel
             using T = std::remove_cvref_t<decltype(source(0, 0, 0))>;
             const View<T> target = std::get<View<T>>(to);
             parallel_for(source.height, grain, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                for (int y = static_cast<int>(begin); y < end; ++y)
+                const auto is_interleaved = [](const auto& v) {
+                    return v.dx == v.channels && (v.dc == 1 || v.channels == 1);
+                };
+                const bool by_rows = is_interleaved(source) && is_interleaved(target);
+                for (int y = static_cast<int>(begin); y < end; ++y) {
+                    if (by_rows) {
+                        std::copy_n(&source(0, y), source.width * source.channels, &target(0, y));
+                        continue;
+                    }
                     for (int x = 0; x < source.width; ++x)
                         for (int c = 0; c < source.channels; ++c) target(x, y, c) = source(x, y, c);
+                }
             });
         },
         from);
