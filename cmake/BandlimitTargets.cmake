@@ -26,6 +26,20 @@ function(bandlimit_options target)
     endif()
 endfunction()
 
+# bandlimit_vector_options(source...): what code for vectors needs in sanitized builds, where compiling it takes longest.
+# Vectors are values, nothing points at them: without the search for pointers into scopes that have ended it takes half.
+function(bandlimit_vector_options)
+    if(NOT BANDLIMIT_SANITIZE MATCHES "address")
+        return()
+    endif()
+    foreach(source IN LISTS ARGN)
+        file(STRINGS ${source} vectors REGEX "<hwy/foreach_target.h>" LIMIT_COUNT 1)
+        if(vectors)
+            set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -fno-sanitize-address-use-after-scope)
+        endif()
+    endforeach()
+endfunction()
+
 # bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and
 # benchmarks, with its headers in the package. A room without files yet is an empty room.
 function(bandlimit_component name)
@@ -38,6 +52,7 @@ function(bandlimit_component name)
         file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*.cpp)
         list(FILTER sources EXCLUDE REGEX "_(test|bench)\\.cpp$")
         target_sources(${target} PRIVATE ${sources})
+        bandlimit_vector_options(${sources})
         install(DIRECTORY ${PROJECT_SOURCE_DIR}/bandlimit/${room}
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit COMPONENT ${name}
             FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
@@ -73,6 +88,10 @@ function(bandlimit_program)
     file(GLOB photographs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*.png)
     bandlimit_embed_photographs(bandlimit ${photographs})
     bandlimit_options(bandlimit)
+    if(BANDLIMIT_FUZZ)
+        # Nothing runs it there: it is built to see that Clang takes it.
+        target_compile_options(bandlimit PRIVATE -O0 -fno-sanitize=all)
+    endif()
     install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()
 
@@ -116,6 +135,8 @@ function(bandlimit_app_tests)
         target_link_libraries(test_app_${name} PRIVATE bandlimit::core bandlimit::io nlohmann_json::nlohmann_json)
         target_compile_definitions(test_app_${name} PRIVATE
             BANDLIMIT_PROGRAM="$<TARGET_FILE:bandlimit>" BANDLIMIT_EXAMPLES="${PROJECT_SOURCE_DIR}/examples")
+        # They start the program and compare what it wrote: that takes less time than making them faster.
+        target_compile_options(test_app_${name} PRIVATE -O0)
         add_dependencies(test_app_${name} bandlimit)
     endforeach()
 endfunction()
@@ -136,7 +157,9 @@ function(bandlimit_consumer_tests)
     endforeach()
 endfunction()
 
-# The target headers: each header in a translation unit of its own, with what its component gives to a consumer.
+# The target headers: each header in a translation unit of its own, with what its component gives to a consumer. But
+# x.h beside x.cpp, which scripts/check-includes has include it first, is compiled alone there; only the program has its
+# precompiled header before that.
 function(bandlimit_header_checks)
     add_custom_target(headers)
     get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
@@ -155,6 +178,10 @@ function(bandlimit_header_checks)
         file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.h)
         set(units)
         foreach(header IN LISTS headers)
+            string(REGEX REPLACE "\\.h$" ".cpp" source ${PROJECT_SOURCE_DIR}/${header})
+            if(EXISTS ${source} AND NOT room STREQUAL "apps")
+                continue()
+            endif()
             set(unit ${PROJECT_BINARY_DIR}/headers/${header}.cpp)
             file(CONFIGURE OUTPUT ${unit} CONTENT "#include \"${header}\"\n")
             list(APPEND units ${unit})
