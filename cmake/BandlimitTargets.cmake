@@ -26,18 +26,16 @@ function(bandlimit_options target)
     endif()
 endfunction()
 
-# bandlimit_vector_options(source...): what code for vectors needs in sanitized builds, where compiling it takes longest.
-# Vectors are values, nothing points at them: without the search for pointers into scopes that have ended it takes half.
-function(bandlimit_vector_options)
-    if(NOT BANDLIMIT_SANITIZE MATCHES "address")
-        return()
-    endif()
+# bandlimit_vector_sources(RESULT source...): those with code for vectors, compiled once per instruction set.
+function(bandlimit_vector_sources result)
+    set(found)
     foreach(source IN LISTS ARGN)
         file(STRINGS ${source} vectors REGEX "<hwy/foreach_target.h>" LIMIT_COUNT 1)
         if(vectors)
-            set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -fno-sanitize-address-use-after-scope)
+            list(APPEND found ${source})
         endif()
     endforeach()
+    set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
 # bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and
@@ -52,7 +50,12 @@ function(bandlimit_component name)
         file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*.cpp)
         list(FILTER sources EXCLUDE REGEX "_(test|bench)\\.cpp$")
         target_sources(${target} PRIVATE ${sources})
-        bandlimit_vector_options(${sources})
+        bandlimit_vector_sources(vectors ${sources})
+        if(vectors AND BANDLIMIT_SANITIZE MATCHES "address")
+            # Vectors are values, nothing points at them: it takes half the time to compile without the search for
+            # pointers into scopes that have ended.
+            set_source_files_properties(${vectors} PROPERTIES COMPILE_OPTIONS -fno-sanitize-address-use-after-scope)
+        endif()
         install(DIRECTORY ${PROJECT_SOURCE_DIR}/bandlimit/${room}
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit COMPONENT ${name}
             FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
@@ -221,6 +224,13 @@ function(bandlimit_fuzzers)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
         message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")
     endif()
+    # The fuzzers run one instruction set. That Clang takes the others too is seen without sanitizers: that is quick.
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/*/*.cpp)
+    bandlimit_vector_sources(vectors ${sources})
+    add_library(fuzz_instruction_sets OBJECT ${vectors})
+    target_link_libraries(fuzz_instruction_sets PRIVATE bandlimit::core hwy::hwy)
+    bandlimit_options(fuzz_instruction_sets)
+    target_compile_options(fuzz_instruction_sets PRIVATE -O0 -g0 -fno-sanitize=all -UHWY_DISABLED_TARGETS)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
     foreach(source IN LISTS sources)
         cmake_path(GET source STEM name)
