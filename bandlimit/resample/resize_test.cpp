@@ -204,6 +204,31 @@ TEST(Resizer, BesideTheImageItReadsWhatTheEdgeSays) {
         }
 }
 
+TEST(Resizer, HasAnEdgePerAxis) {
+    const Image<float> src = noise(21, 18, 3, 7);
+    for (const Edge edge_x : all_edges())
+        for (const Edge edge_y : all_edges()) {
+            const Bank x = make_bank(lanczos(3), Axis{21}, Axis{10}, edge_x);
+            const Bank y = make_bank(lanczos(3), Axis{18}, Axis{9}, edge_y);
+            Image<float> middle(21, 9, 3), expected(10, 9, 3);
+            apply(y, transposed(src.view()), transposed(middle.view()));
+            apply(x, middle.view(), expected.view());
+            const ResizeOptions options{.reconstruction = lanczos(3), .edge = edge_x, .edge_y = edge_y};
+            const Image<float> found = resample(src.view(), 10, 9, options);
+            for (int i = 0; i < 10 * 9 * 3; ++i)
+                ASSERT_NEAR(found.view().data[i], expected.view().data[i], 1e-5) << name_of(edge_x) << name_of(edge_y);
+            // A radial kernel, far from the borders of y: what lies beyond those of x is read as x says.
+            const auto stripes = [&](Edge along_y) {
+                Image<float> image(16, 16);
+                for (int v = 0; v < 256; ++v) image.view().data[v] = src.view()(v % 16, 0);
+                return resample(image.view(), 8, 8,
+                                {.reconstruction = jinc_lanczos(2), .edge = edge_x, .edge_y = along_y});
+            };
+            const Image<float> one = stripes(edge_y), same = stripes(edge_x);
+            for (int v = 8 * 4; v < 8 * 5; ++v) ASSERT_NEAR(one.view().data[v], same.view().data[v], 1e-5);
+        }
+}
+
 TEST(Resizer, PartsOfWideImagesGiveTheBitsOfTheWhole) {
     constexpr int width = 7000, height = 70, new_width = 2999, new_height = 12;
     for (const int channels : {1, 3, 4}) {
