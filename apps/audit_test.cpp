@@ -51,15 +51,17 @@ TEST(Audit, FindsOutAboutItself) {
         EXPECT_EQ(a["measured"]["x"].size(), a["measured"]["value"].size());
     }
     for (const nlohmann::json& finding : report["findings"]) EXPECT_FALSE(finding["wrong"].get<bool>()) << finding;
-    for (const char* file : {"page/index.html", "page/kernel-1-to-2.png", "page/plate-1-to-2.png", "files/01-in.png", "files/05-out.png"})
+    for (const char* file :
+         {"page/index.html", "page/kernel-1-to-2.png", "page/plate-1-to-2.png", "files/01-in.png", "files/05-out.png"})
         EXPECT_TRUE(std::filesystem::exists(audit / file)) << file;
     EXPECT_TRUE(audit.left_nothing());
 }
 
 TEST(Audit, SaysInWordsWhatIsWrong) {
     const Auditor audit;
-    const Outcome run = audit("bandlimit resize {in} {out} --size {width}x{height} --kernel tent --align centers --space data",
-                              "--scales 2 --grey --depth u16");
+    const Outcome run =
+        audit("bandlimit resize {in} {out} --size {width}x{height} --kernel tent --align centers --space data",
+              "--scales 2 --grey --depth u16");
     ASSERT_TRUE(succeeds(run));
     const auto found = run.out.find("\nFound\n");
     ASSERT_NE(found, std::string::npos) << run;

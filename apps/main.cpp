@@ -10,7 +10,9 @@
 #include "apps/command.h"
 #include "apps/common.h"
 
-namespace bandlimit::app { void add_audit(Program& program); }
+namespace bandlimit::app {
+void add_audit(Program& program);
+}
 namespace {
 
 using namespace bandlimit;
