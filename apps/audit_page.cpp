@@ -90,7 +90,7 @@ void add_scale(Page& page, const AuditReport& report, const ScaleReport& s, cons
     const std::string name = fmt::format("{}-to-{}", s.ratio.from, s.ratio.to);
     const AxisReport& a = s.x;
     page.section(fmt::format("Scale {}", ratio_text(s.ratio)),
-                 fmt::format("Along x: {}; {} by {:+.3f} output pixels. Along y: {}; {} by {:+.3f}.",
+                 fmt::format("Along x: {}; placed by {}, shift {:.3f} output pixels. Along y: {}; {}, {:.3f}.",
                              kernel_text(a.kernel, s.ratio), a.alignment, a.shift, kernel_text(s.y.kernel, s.ratio),
                              s.y.alignment, s.y.shift),
                  {});
@@ -123,11 +123,11 @@ void write_audit_page(const AuditReport& report, const AuditSubject& subject, co
                           subject.format, subject.depth, report.runs, subject.seconds));
     const std::vector<Finding> findings = findings_of(report, subject);
     for (const Finding& f : findings)
-        if (f.is_wrong) page.headline(f.key, f.text);
+        if (f.is_wrong) page.headline(f.text, f.key);
     if (std::none_of(findings.begin(), findings.end(), [](const Finding& f) { return f.is_wrong; }))
-        page.headline("findings", "nothing wrong");
-    std::vector<std::vector<std::string>> rows{{"what", "", "finding"}};
-    for (const Finding& f : findings) rows.push_back({f.key, f.is_wrong ? "wrong" : "", f.text});
+        page.headline("was found", "nothing wrong");
+    std::vector<std::vector<std::string>> rows{{"finding", ""}};
+    for (const Finding& f : findings) rows.push_back({f.text, f.is_wrong ? "wrong" : "fine"});
     page.section("Findings", "", {});
     page.table(rows, "", "");
     for (const ScaleReport& s : report.scales) add_scale(page, report, s, folder);

@@ -156,7 +156,7 @@ Choice choose(const Measured& m, std::size_t axis, const std::vector<double>& jo
     double best = 1e9;
     for (std::size_t c = 0; c < fits.size(); ++c) best = std::min(best, fits[c].residual);
     const auto is_as_good = [&](std::size_t c) {
-        return fits[c].residual <= std::max(1.15 * best + 1e-6, best + floor / 4);
+        return fits[c].residual <= std::max(1.15 * best + 1e-6, best + floor / 2);
     };
     const auto fits_form = [&](std::size_t c) { return !separable || *separable != m.candidates[c].is_radial; };
     std::optional<std::size_t> chosen;

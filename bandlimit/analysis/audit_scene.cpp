@@ -128,7 +128,8 @@ Image<float> alpha_scene(const Ratio& ratio) {
     };
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
-            if (y < size) put(x, y, x < size ? std::array{1.f, 0.f, 0.f, 1.f} : std::array{0.f, 1.f, 0.f, 0.f});
+            // The border lies off the middle: at half size a box would see either side of it alone.
+            if (y < size) put(x, y, x <= size ? std::array{1.f, 0.f, 0.f, 1.f} : std::array{0.f, 1.f, 0.f, 0.f});
             else if (y < 2 * size) put(x, y, {1, 1, 1, static_cast<float>((x + y) % 2)});
             else put(x, y, {0.8f, 0.4f, 0.2f, 128 / 255.f});
         }

@@ -134,6 +134,9 @@ TEST(Audit, AlphaThatBleedsAndAlphaThatIsLost) {
     EXPECT_EQ(straight.alpha[0].mode, AlphaMode::bleeds);
     EXPECT_EQ(straight.alpha[0].hidden, "kept");
     EXPECT_GT(straight.alpha[0].leak, 0.9);
+    const AuditReport box_alone =
+        audit_at(OwnResize{.options = {.reconstruction = box(), .premultiply = false}, .bytes = true}, {{1, 2}}, true);
+    EXPECT_EQ(box_alone.alpha[0].mode, AlphaMode::bleeds) << "a box sees no neighbour, only its own cell";
 
     const auto without = [](View<const float> v, int width, int height) {
         return copy_of(

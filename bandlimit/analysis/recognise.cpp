@@ -74,6 +74,14 @@ Kernel projected(const Kernel& radial) {
     return {radial.name, radial.radius, value, Kernel::Form::separable, {}};
 }
 
+/// The mean over a target's cell of sources that are constant on their cells, while growing; named as box is elsewhere.
+Kernel area(double target_cell) {
+    const auto value = [target_cell](double x) {
+        return std::clamp((1 + target_cell) / 2 - std::abs(x), 0.0, target_cell);
+    };
+    return {"area", (1 + target_cell) / 2, value, Kernel::Form::separable, {}};
+}
+
 /// `kernel` with its radius multiplied.
 Kernel widened(const Kernel& kernel, double factor) {
     if (factor == 1) return kernel;
@@ -201,10 +209,13 @@ std::vector<Candidate> all_candidates(const Ratio& ratio) {
         } else if (kernel.form == Kernel::Form::area) {
             kernel.form = Kernel::Form::separable;
             if (ratio.shrinks()) all.push_back({kernel, 1, false, false, true});
+        } else if (kernel.name == "blackman-harris-window") {
+            all.push_back({kernel, 1.5 / kernel.radius});  // as OpenImageIO has it: 3 samples wide
         } else if (ratio.shrinks() && !candidate.is_radial) {
             all.push_back({kernel, 1 / ratio.stretch()});
         }
     }
+    if (!ratio.shrinks()) all.push_back({area(ratio.step())});
     return all;
 }
 

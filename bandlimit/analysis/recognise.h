@@ -37,7 +37,8 @@ struct Candidate {
 };
 
 /// Every kernel of kernel_list(), with usual parameters, and what other programs make of them: box by equal weights,
-/// cubics of other parameters, and for scales below 1 all of them also not widened.
+/// cubics of other parameters, for scales below 1 all of them also not widened, and above 1 "area", the mean over
+/// the target's cell where box picks a sample.
 std::vector<Candidate> all_candidates(const Ratio& ratio);
 
 /// The weights that a candidate would have, clamped at the borders.

@@ -127,6 +127,28 @@ TEST(Recognise, BoxByEqualWeights) {
     EXPECT_TRUE(found.candidate.is_sampled);
 }
 
+TEST(Recognise, AreasWhileGrowing) {
+    // Each target cell lies in one source cell or in two, and weighs them by what it covers.
+    const auto make = [](int inputs, int outputs) {
+        Bank bank;
+        bank.inputs = inputs;
+        const double step = double(inputs) / outputs;
+        for (int i = 0; i < outputs; ++i) {
+            const int first = static_cast<int>(i * step + 1e-9), next = std::min(inputs - 1, first + 1);
+            const double in_next = std::max(0.0, (i + 1) * step - (first + 1)) / step;
+            bank.rows.push_back({bank.weights.size(), 2, 0, 1});
+            bank.weights.push_back(static_cast<float>(1 - in_next));
+            bank.weights.push_back(static_cast<float>(in_next));
+            bank.outputs.push_back({next - 1, i});
+            if (next == first) std::swap(bank.weights.end()[-1], bank.weights.end()[-2]);
+        }
+        return bank;
+    };
+    const Found found = recognise(measured(by_bank(make), grow, true));
+    EXPECT_EQ(found.candidate.kernel.name, "area");
+    EXPECT_LT(found.fit.residual, 0.01);
+}
+
 TEST(Recognise, FreeParameters) {
     for (const char* name : {"cubic:0.21:0.55", "gaussian:0.43"}) {
         const MeasuredBank bank =
