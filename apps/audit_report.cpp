@@ -90,11 +90,20 @@ Finding light_finding(const AuditReport& report, const AuditSubject& subject) {
                     fmt::format("averages light by a power of 2.2 instead of the sRGB curve: black and white become "
                                 "{:.0f}, not 188",
                                 checker)};
+        case Light::bt709:
+            return {
+                "light", true,
+                fmt::format("averages light by the curve of BT.709 instead of sRGB's: black and white become {:.0f}, "
+                            "not 188",
+                            checker)};
         case Light::codes:
             if (subject.depth == "f32") return {"light", false, "averages floats as they are"};
             return {"light", true, fmt::format("averages sRGB codes: black and white become {:.0f}, not 188", checker)};
         case Light::unknown: break;
     }
+    if (report.light.front().error > 0)
+        return {"light", true,
+                fmt::format("averages by no curve that is known here: black and white become {:.0f}", checker)};
     return {"light", false, "averages nothing that tells in which light"};
 }
 
@@ -169,7 +178,7 @@ std::optional<double> bias_of(const AuditReport& report) {
 
 std::optional<Finding> rounding_finding(const AuditReport& report) {
     const auto bias = bias_of(report);
-    if (!bias) return {};
+    if (!bias || report.filtered_in == Light::unknown) return {};
     if (report.code == 0)
         return Finding{"rounding", std::abs(*bias) > 1e-3, fmt::format("mean error of values {:+.1e}", *bias)};
     if (std::abs(*bias) < visible_bias)

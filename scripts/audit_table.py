@@ -34,7 +34,7 @@ def shift(scale):
 
 
 def light(report):
-    word = {"srgb": "light", "codes": "codes", "gamma-2.2": "power 2.2", "unknown": "–"}[report["filtered_in"]]
+    word = {"srgb": "light", "codes": "codes", "gamma-2.2": "power 2.2", "bt709": "BT.709", "unknown": "–"}[report["filtered_in"]]
     return f"{word}, {255 * report['light'][0]['checkerboard']:.0f}"
 
 

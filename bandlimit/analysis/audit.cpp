@@ -159,13 +159,23 @@ Choice choose(const Measured& m, std::size_t axis, const std::vector<double>& jo
         return fits[c].residual <= std::max(1.15 * best + 1e-6, best + floor / 2);
     };
     const auto fits_form = [&](std::size_t c) { return !separable || *separable != m.candidates[c].is_radial; };
-    std::optional<std::size_t> chosen;
-    for (const bool must_fit_form : {true, false})
-        for (std::size_t c = 0; c < fits.size() && (must_fit_form || !chosen || !fits_form(*chosen)); ++c)
-            if (is_as_good(c) && (!must_fit_form || fits_form(c)) && (!chosen || joint[c] < joint[*chosen])) chosen = c;
-    Choice choice{{}, fits[*chosen]};
+    std::vector<std::size_t> good, fitting;
+    for (std::size_t c = 0; c < fits.size(); ++c) {
+        if (!is_as_good(c)) continue;
+        good.push_back(c);
+        if (fits_form(c)) fitting.push_back(c);
+    }
+    const std::vector<std::size_t>& eligible = fitting.empty() ? good : fitting;
+    // Of candidates that explain all scales alike, one that shares corners.
+    const auto cost = [&](std::size_t c) {
+        const Placement& p = fits[c].placement;
+        return joint[c] + (p.centers || p.shift != 0 ? 1e-6 : 0);
+    };
+    const std::size_t chosen = *std::min_element(eligible.begin(), eligible.end(),
+                                                 [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
+    Choice choice{{}, fits[chosen]};
     KernelFinding& f = choice.finding;
-    f.candidate = m.candidates[*chosen];
+    f.candidate = m.candidates[chosen];
     f.noise = floor;
     for (std::size_t c = 0; c < fits.size(); ++c) {
         if (is_same_kernel(m.candidates[c], f.candidate)) continue;
@@ -241,7 +251,7 @@ bool KernelFinding::is_widened(const Ratio& ratio) const {
 }
 
 std::string_view name_of(Light light) {
-    constexpr std::array<std::string_view, 4> words{"unknown", "codes", "srgb", "gamma-2.2"};
+    constexpr std::array<std::string_view, 5> words{"unknown", "codes", "srgb", "gamma-2.2", "bt709"};
     return words[static_cast<std::size_t>(light)];
 }
 
@@ -251,13 +261,23 @@ std::string_view name_of(AlphaMode mode) {
 }
 
 double decode(Light light, double stored) {
-    if (light == Light::srgb) return srgb_to_linear(stored);
-    return light == Light::gamma22 ? std::copysign(std::pow(std::abs(stored), 2.2), stored) : stored;
+    const double v = std::abs(stored);
+    switch (light) {
+        case Light::srgb: return srgb_to_linear(stored);
+        case Light::gamma22: return std::copysign(std::pow(v, 2.2), stored);
+        case Light::bt709: return std::copysign(v < 0.081 ? v / 4.5 : std::pow((v + 0.099) / 1.099, 1 / 0.45), stored);
+        default: return stored;
+    }
 }
 
 double encode(Light light, double value) {
-    if (light == Light::srgb) return linear_to_srgb(value);
-    return light == Light::gamma22 ? std::copysign(std::pow(std::abs(value), 1 / 2.2), value) : value;
+    const double v = std::abs(value);
+    switch (light) {
+        case Light::srgb: return linear_to_srgb(value);
+        case Light::gamma22: return std::copysign(std::pow(v, 1 / 2.2), value);
+        case Light::bt709: return std::copysign(v < 0.018 ? v * 4.5 : 1.099 * std::pow(v, 0.45) - 0.099, value);
+        default: return value;
+    }
 }
 
 AuditReport audit(const ResizeFunction& resize, const AuditOptions& options) {

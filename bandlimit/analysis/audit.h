@@ -30,7 +30,8 @@ enum class Light {
     unknown,  ///< nothing was averaged (nearest), or by no transfer function that is known here
     codes,    ///< as they are stored
     srgb,     ///< decoded by the sRGB curve: linear light
-    gamma22   ///< decoded by a power of 2.2
+    gamma22,  ///< decoded by a power of 2.2
+    bt709     ///< decoded by the curve of ITU-R BT.709
 };
 std::string_view name_of(Light light);
 double decode(Light light, double stored);
@@ -39,7 +40,7 @@ double encode(Light light, double value);
 struct LightReport {
     Light light = Light::unknown;
     double checker = 0;     ///< mean of what became of a checkerboard of 0 and 1: 0.5 in codes, 0.735 in sRGB light
-    double error = 0;       ///< of the best explanation, root mean square, as stored
+    double error = 0;       ///< of the best explanation, root mean square, as stored; 0 too where nothing was averaged
     double flat_error = 0;  ///< largest change of a constant grey
 };
 

@@ -103,15 +103,16 @@ LightReport read_light(View<const float> result, const Ratio& ratio, double code
     report.error = 1;
     // Where growing overshoots, black and white are clipped: only the pair inside the range counts.
     const std::size_t first = ratio.shrinks() ? 0 : inner_pair;
-    for (const Light light : {Light::codes, Light::srgb, Light::gamma22}) {
+    for (const Light light : {Light::codes, Light::srgb, Light::gamma22, Light::bt709}) {
         double square = 0;
         for (std::size_t i = first; i < pairs.size(); ++i) {
             const double e = light_error(middle_of(result, panels, int(i)), rounded(i), light);
             square += e * e / double(pairs.size() - first);
         }
-        // A power of 2.2 is told from sRGB only by black and white, and by what explains clearly more.
-        if (light == Light::gamma22 && !ratio.shrinks()) continue;
-        if (std::sqrt(square) < (light == Light::gamma22 ? 0.7 : 1) * report.error)
+        // Other curves are told from sRGB only by black and white, and by what explains clearly more.
+        const bool is_other = light == Light::gamma22 || light == Light::bt709;
+        if (is_other && !ratio.shrinks()) continue;
+        if (std::sqrt(square) < (is_other ? 0.7 : 1) * report.error)
             report.error = std::sqrt(square), report.light = light;
     }
     if (report.error > std::max(2 * code, 0.008)) report.light = Light::unknown;
@@ -155,7 +156,9 @@ AlphaReport read_alpha(View<const float> result, const Ratio& ratio, double code
         if (value(x, 3) > tolerance) report.leak = std::max(report.leak, value(x, 1));
     report.mode = report.leak > tolerance ? AlphaMode::bleeds : AlphaMode::weighted;
     const auto identity = [](double v) { return v; };
-    report.coverage = mean_over(middle_of(alpha, 3, 1), identity);
+    // Where nothing is averaged, nothing is wrong with the average.
+    const View<const float> checker = middle_of(alpha, 3, 1);
+    report.coverage = is_picked(checker, {0, 1}, tolerance) ? 0.5 : mean_over(checker, identity);
     const std::array<double, 4> flat{0.8, 0.4, 0.2, 128 / 255.0};
     for (int c = 0; c < 4; ++c)
         report.flat_error = std::max(

@@ -95,10 +95,32 @@ TEST(Audit, AveragesOfCodesAndOfOtherPowers) {
         return out;
     };
     EXPECT_EQ(audit_at(power, {{1, 2}}).filtered_in, Light::gamma22);
+    const auto video = [](View<const float> v, int width, int height) {
+        Image<float> in = copy_of(v);
+        for_samples(in.view(), [](float x) { return float(decode(Light::bt709, double(x))); });
+        Image<float> out = OwnResize{}(in.view(), width, height);
+        for_samples(out.view(), [](float x) { return nearest_byte(float(encode(Light::bt709, double(x)))); });
+        return out;
+    };
+    EXPECT_EQ(audit_at(video, {{1, 2}}).filtered_in, Light::bt709);
+    for (const double v : {0.01, 0.05, 0.5, 1.0, -0.3})
+        for (const Light light : {Light::srgb, Light::gamma22, Light::bt709})
+            EXPECT_NEAR(encode(light, decode(light, v)), v, 1e-4) << name_of(light);  // constants of four digits
     const AuditReport picks = audit_at(OwnResize{.options = {.reconstruction = nearest()}, .bytes = true}, {shrink});
     EXPECT_EQ(picks.filtered_in, Light::unknown) << "nothing was averaged";
     EXPECT_EQ(picks.scales[0].x.kernel.name, "nearest");
     EXPECT_FALSE(picks.scales[0].x.kernel.is_widened(shrink));
+}
+
+TEST(Audit, NearestIsNoShiftHoweverTiesAreDecided) {
+    for (const bool down : {false, true}) {
+        const auto make = [=](int inputs, int outputs) { return bank_of({nearest(), 1, down}, {}, inputs, outputs); };
+        for (const ScaleReport& s : audit_at(by_bank(make), {{1, 2}, shrink}).scales) {
+            EXPECT_EQ(s.x.kernel.name, "nearest");
+            EXPECT_TRUE(s.x.kernel.is_known);
+            EXPECT_EQ(s.x.alignment, "corners");
+        }
+    }
 }
 
 TEST(Audit, AKernelThatIsNotWidenedAliases) {

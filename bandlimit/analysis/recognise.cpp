@@ -111,6 +111,8 @@ void fold(const Bank& bank, int output, int period, Resolve resolve_index, std::
         if (const int j = resolve_index(index++); j != no_input) row[at(((j % period) + period) % period)] += double(w);
 }
 
+int unresolved(int j) { return j; }
+
 double squared_error(const MeasuredBank& bank, int output, const std::vector<double>& row) {
     double sum = 0;
     for (std::size_t c = 0; c < row.size(); ++c) {
@@ -124,6 +126,15 @@ double energy(const MeasuredBank& bank, int output) {
     double sum = 0;
     for (int c = 0; c < bank.period; ++c) sum += bank.row(output)[c] * bank.row(output)[c];
     return sum;
+}
+
+/// Whether output i lies half way between two samples, one of which nearest takes: rounding decides, now so, now so.
+bool is_undecided(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement, int i) {
+    if (candidate.kernel.form != Kernel::Form::nearest || bank.ratio.is_whole()) return false;
+    const Axis source{bank.inputs, 0, double(bank.inputs)};
+    const double place = source.index(target_axis(placement, bank.inputs, bank.outputs).position(i));
+    const double nearest = std::round(place);
+    return std::abs(std::abs(place - nearest) * 2 - 1) < 2e-3;
 }
 
 struct Span {
@@ -204,13 +215,12 @@ std::vector<Candidate> all_candidates(const Ratio& ratio) {
     for (const Candidate& candidate : nominal) {
         all.push_back(candidate);
         Kernel kernel = candidate.kernel;
+        if (kernel.name == "blackman-harris-window") all.push_back({kernel, 1.5 / kernel.radius});  // OpenImageIO's
         if (kernel.form == Kernel::Form::nearest) {
             all.push_back({kernel, 1, true});
         } else if (kernel.form == Kernel::Form::area) {
             kernel.form = Kernel::Form::separable;
             if (ratio.shrinks()) all.push_back({kernel, 1, false, false, true});
-        } else if (kernel.name == "blackman-harris-window") {
-            all.push_back({kernel, 1.5 / kernel.radius});  // as OpenImageIO has it: 3 samples wide
         } else if (ratio.shrinks() && !candidate.is_radial) {
             all.push_back({kernel, 1 / ratio.stretch()});
         }
@@ -229,8 +239,8 @@ Fit fit(const MeasuredBank& bank, const Candidate& candidate, const Placement& p
     std::vector<double> row;
     double error = 0, all = 0;
     for (int i = rows.begin; i < rows.end; ++i) {
-        fold(
-            prediction, i - rows.begin, bank.period, [](int j) { return j; }, row);
+        if (is_undecided(bank, candidate, placement, i)) continue;
+        fold(prediction, i - rows.begin, bank.period, unresolved, row);
         error += squared_error(bank, i, row);
         all += energy(bank, i);
     }
@@ -280,13 +290,10 @@ Fitted fit_parameters(const MeasuredBank& bank, const Candidate& start, const Fi
         }
         const auto hundredths = [](double v) { return std::round(v * 100) / 100; };
         keep({cubic(hundredths(b), hundredths(c)), widening});
-        const double sigma = minimise(
-            [&](double v) {
-                return score({gaussian(std::exp(v)), widening});
-            },
-            std::log(0.2), std::log(1.2), 18);
-        keep({gaussian(std::round(std::exp(sigma) * 1000) / 1000), widening});
     }
+    const double sigma =
+        minimise([&](double v) { return score({gaussian(std::exp(v))}); }, std::log(0.1), std::log(1.2), 20);
+    keep({gaussian(std::round(std::exp(sigma) * 1000) / 1000)});
     if (start.kernel.form == Kernel::Form::separable && !start.is_sampled) {
         Candidate other = start;
         const auto with = [&](double w) { return other.widening = w, other; };
@@ -401,10 +408,9 @@ Phases find_phases(const MeasuredBank& bank, const Candidate& candidate, const P
     std::vector<double> place, delta, m, r, l;  // source samples, to the right
     double variance = 0;
     for (int i = rows.begin; i < rows.end; ++i) {
-        const auto same = [](int j) { return j; };
-        fold(middle, i - rows.begin, bank.period, same, m);
-        fold(right, i - rows.begin, bank.period, same, r);
-        fold(left, i - rows.begin, bank.period, same, l);
+        fold(middle, i - rows.begin, bank.period, unresolved, m);
+        fold(right, i - rows.begin, bank.period, unresolved, r);
+        fold(left, i - rows.begin, bank.period, unresolved, l);
         double product = 0, square = 0;
         for (int c = 0; c < bank.period; ++c) {
             const double slope = (l[at(c)] - r[at(c)]) / (2 * h * target.pitch());  // per source sample of the place
