@@ -48,7 +48,8 @@ void check(const Options& o) {
             "the command must hold {width} and {height}, or {scale}, for what size to make; write it as "
             "'program {in} --size {width}x{height} {out}'");
     check_output_format("x." + o.format, o.depth);
-    if (!(o.timeout > 0)) throw UsageError(fmt::format("--timeout: {} is no time to run in; pass seconds above 0", o.timeout));
+    if (!(o.timeout > 0))
+        throw UsageError(fmt::format("--timeout: {} is no time to run in; pass seconds above 0", o.timeout));
 }
 
 /// Values as stored, whatever they mean.
