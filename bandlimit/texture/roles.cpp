@@ -108,7 +108,7 @@ Role parse_role(std::string_view name) {
         if (entry.second == name) return entry.first;
         list += (list.empty() ? "" : ", ") + std::string(entry.second);
     }
-    fail("parse_role: unknown role '", name, "'; pass one of ", list);
+    fail("role \"", name, "\" is unknown; choose one of: ", list);
 }
 
 RoleGuess guess_role(std::string_view path) {
