@@ -48,7 +48,8 @@ void check(const Options& o) {
             "the command must hold {width} and {height}, or {scale}, for what size to make; write it as "
             "'program {in} --size {width}x{height} {out}'");
     check_output_format("x." + o.format, o.depth);
-    if (!(o.timeout > 0)) throw UsageError(fmt::format("--timeout {}: pass seconds above 0", o.timeout));
+    if (!(o.timeout > 0))
+        throw UsageError(fmt::format("--timeout {}: no run ends in that; pass seconds above 0", o.timeout));
 }
 
 /// Values as stored, whatever they mean.
@@ -220,7 +221,6 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_audit(Program& program);
 void add_audit(Program& program) {
     auto o = std::make_shared<Options>();
     CLI::App* verb = program.add_verb(

@@ -41,6 +41,7 @@ void add_resize(Program& program);
 void add_pattern(Program& program);
 void add_compare(Program& program);
 void add_analyze(Program& program);
+void add_audit(Program& program);
 void add_tour(Program& program);
 
 /// Options that many verbs have, with one wording.

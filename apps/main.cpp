@@ -10,9 +10,6 @@
 #include "apps/command.h"
 #include "apps/common.h"
 
-namespace bandlimit::app {
-void add_audit(Program& program);
-}
 namespace {
 
 using namespace bandlimit;
