@@ -49,7 +49,7 @@ void check(const Options& o) {
             "'program {in} --size {width}x{height} {out}'");
     check_output_format("x." + o.format, o.depth);
     if (!(o.timeout > 0))
-        throw UsageError(fmt::format("--timeout {}: no run ends in that; pass seconds above 0", o.timeout));
+        throw UsageError(fmt::format("--timeout: {} is no time to run in; pass seconds above 0", o.timeout));
 }
 
 /// Values as stored, whatever they mean.

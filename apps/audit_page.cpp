@@ -58,19 +58,6 @@ Series nominal(const KernelFinding& kernel, const Ratio& ratio) {
     return series;
 }
 
-Panel kernel_panel(const AxisReport& a, const Ratio& ratio, const std::string& title) {
-    Series measured;
-    measured.label = "measured";
-    measured.style = Series::Style::points;
-    const double far =
-        std::min(5.0, std::max(a.kernel.candidate.kernel.radius * a.kernel.candidate.widening + 0.5, 1.0));
-    for (std::size_t i = 0; i < a.samples.x.size(); ++i)
-        if (std::abs(a.samples.x[i]) <= far) measured.x.push_back(a.samples.x[i]), measured.y.push_back(a.samples.y[i]);
-    Panel panel{title, "pixels of the coarser grid", "weight", {measured, nominal(a.kernel, ratio)}};
-    panel.x_range = Range{-far, far};
-    return panel;
-}
-
 /// What bandlimit makes of the same zone plate in linear light of the same meaning.
 Image<float> own_plate(const ScaleReport& s, Light light, double code) {
     const PictureScene scene = picture_scene(s.ratio, light, code);
@@ -116,6 +103,19 @@ void add_scale(Page& page, const AuditReport& report, const ScaleReport& s, cons
 }
 
 }  // namespace
+
+Panel kernel_panel(const AxisReport& a, const Ratio& ratio, const std::string& title) {
+    Series measured;
+    measured.label = "measured";
+    measured.style = Series::Style::points;
+    const double far =
+        std::min(5.0, std::max(a.kernel.candidate.kernel.radius * a.kernel.candidate.widening + 0.5, 1.0));
+    for (std::size_t i = 0; i < a.samples.x.size(); ++i)
+        if (std::abs(a.samples.x[i]) <= far) measured.x.push_back(a.samples.x[i]), measured.y.push_back(a.samples.y[i]);
+    Panel panel{title, "pixels of the coarser grid", "weight", {measured, nominal(a.kernel, ratio)}};
+    panel.x_range = Range{-far, far};
+    return panel;
+}
 
 void write_audit_page(const AuditReport& report, const AuditSubject& subject, const std::string& folder) {
     Page page("An audit of a resizer",

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/plot.h"
 #include "bandlimit/analysis/audit.h"
 
 namespace bandlimit::app {
@@ -31,6 +32,9 @@ std::string ratio_text(const Ratio& ratio);
 nlohmann::ordered_json json_of(const AuditReport& report, const AuditSubject& subject);
 /// The report as lines for a terminal.
 std::string text_of(const AuditReport& report, const AuditSubject& subject);
+
+/// The weights that were measured, over the kernel that explains them best.
+Panel kernel_panel(const AxisReport& axis, const Ratio& ratio, const std::string& title);
 
 /// Writes index.html and its pictures into a folder that exists.
 void write_audit_page(const AuditReport& report, const AuditSubject& subject, const std::string& folder);

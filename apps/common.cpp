@@ -184,8 +184,11 @@ void silence_codecs() {
 #endif
 }
 
-Progress::Progress(std::string label, double total)
-    : label_(std::move(label)), total_(total), visible_(!quiet && isatty(fileno(real_stderr)) != 0) {}
+Progress::Progress(std::string label, double total, std::string unit)
+    : label_(std::move(label)),
+      unit_(std::move(unit)),
+      total_(total),
+      visible_(!quiet && isatty(fileno(real_stderr)) != 0) {}
 
 Progress::~Progress() {
     if (drawn_ != Clock::time_point{}) fmt::print(real_stderr, "\r\x1b[K");
@@ -200,8 +203,9 @@ void Progress::advance_to(double done) {
     const double share = std::min(1.0, done / total_);
     const auto filled = static_cast<std::size_t>(share * width);
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    fmt::print(real_stderr, "\r\x1b[K{} [{:<{}}] {:3.0f} %  {:.0f} s left", label_, std::string(filled, '#'), width,
-               100 * share, elapsed * (1 / share - 1));
+    const std::string rate = unit_.empty() ? "" : fmt::format("{:.1f} {}/s  ", done / elapsed, unit_);
+    fmt::print(real_stderr, "\r\x1b[K{} [{:<{}}] {:3.0f} %  {}{:.0f} s left", label_, std::string(filled, '#'), width,
+               100 * share, rate, elapsed * (1 / share - 1));
 }
 
 }  // namespace bandlimit::app

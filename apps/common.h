@@ -26,7 +26,8 @@ struct Program {
     CLI::App cli{"bandlimit: sampling done right, for graphics", "bandlimit"};
     std::function<void()> selected;  ///< set by parsing
 
-    /// Adds a verb; `example` is one command line that works as pasted.
+    /// Adds a verb; `example` is a command line that works as pasted, or several, each on a line that begins with two
+    /// blanks but the first.
     CLI::App* add_verb(const std::string& name, const std::string& summary, const std::string& example);
     /// `check` sees the parsed options and throws Error or UsageError (exit 2); `run` does the work.
     void on(CLI::App* verb, std::function<void()> check, std::function<void()> run);
@@ -38,6 +39,7 @@ void require_one_subcommand(CLI::App& app, const std::string& noun);
 
 void add_info(Program& program);
 void add_resize(Program& program);
+void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_compare(Program& program);
 void add_analyze(Program& program);
@@ -82,16 +84,16 @@ void print_json(const nlohmann::ordered_json& report);
 /// A line on the real stderr for something the user should know, unless --quiet.
 void note(const std::string& text);
 
-/// A bar on a terminal, once the work has lasted two seconds.
+/// A bar on a terminal, once the work has lasted two seconds; with the rate where the work has a `unit`.
 class Progress {
 public:
-    explicit Progress(std::string label, double total);
+    explicit Progress(std::string label, double total, std::string unit = {});
     ~Progress();
     void advance_to(double done);
 
 private:
     using Clock = std::chrono::steady_clock;
-    std::string label_;
+    std::string label_, unit_;
     double total_;
     Clock::time_point start_ = Clock::now(), drawn_{};
     bool visible_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/common.h"
+#include "apps/texture_file.h"
 
 namespace bandlimit::app {
 namespace {
@@ -12,7 +13,7 @@ struct Options {
     bool json = false;
 };
 
-void run(const Options& options) {
+void run_image(const Options& options) {
     const ImageReader reader(options.file, 1);
     const ImageInfo& info = reader.info();
     if (options.json) {
@@ -45,13 +46,83 @@ void run(const Options& options) {
     if (info.orientation != 1) fmt::print("  turned    upright from orientation {}\n", info.orientation);
 }
 
+std::vector<std::string> channel_names(const TexelFormat& texels) {
+    std::vector<std::string> names{"R", "G", "B", "A"};
+    names.resize(static_cast<std::size_t>(texels.channels));
+    return names;
+}
+
+/// The bytes of all images of a level, as the file stores them.
+std::uint64_t level_bytes(const ContainerInfo& info, int level) {
+    std::uint64_t bytes = static_cast<std::uint64_t>(info.texel_bytes);
+    for (const int factor :
+         {mip_length(info.width, level), mip_length(info.height, level), info.layers, info.is_cube ? 6 : 1})
+        bytes *= static_cast<std::uint64_t>(factor);
+    return bytes;
+}
+
+nlohmann::ordered_json json_of(const Options& options, const ContainerInfo& info) {
+    const TexelFormat& texels = info.texels;
+    const bool has_alpha = texels.channels == 4;
+    nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+    for (int level = 0; level < info.levels; ++level)
+        levels.push_back({{"width", mip_length(info.width, level)},
+                          {"height", mip_length(info.height, level)},
+                          {"bytes", level_bytes(info, level)}});
+    return {{"file", options.file},
+            {"format", info.container == Container::ktx2 ? "ktx2" : "dds"},
+            {"width", info.width},
+            {"height", info.height},
+            {"channels", texels.channels},
+            {"channel_names", channel_names(texels)},
+            {"depth", name_of(texels.depth)},
+            {"alpha", has_alpha ? nlohmann::ordered_json(3) : nlohmann::ordered_json()},
+            {"associated_alpha", texels.premultiplied},
+            {"transfer", name_of(encoding_of(texels, false).transfer)},
+            {"levels", info.levels},
+            {"texel_format", info.format},
+            {"srgb", texels.srgb},
+            {"premultiplied", texels.premultiplied},
+            {"array", info.is_array},
+            {"layers", info.layers},
+            {"cube", info.is_cube},
+            {"faces", info.is_cube ? 6 : 1},
+            {"level_sizes", levels}};
+}
+
+void run_texture(const Options& options) {
+    const ContainerInfo info = texture_info(options.file);
+    if (options.json) {
+        print_json(json_of(options, info));
+        return;
+    }
+    const TexelFormat& texels = info.texels;
+    fmt::print("{}: {}\n", options.file, info.container == Container::ktx2 ? "ktx2" : "dds");
+    fmt::print("  size      {} x {}\n", info.width, info.height);
+    if (info.is_array) fmt::print("  layers    {}\n", info.layers);
+    if (info.is_cube) fmt::print("  faces     6 (+x -x +y -y +z -z)\n");
+    fmt::print("  texels    {}\n", info.format);
+    fmt::print("  channels  {} ({})\n", texels.channels, fmt::join(channel_names(texels), " "));
+    fmt::print("  depth     {}\n", name_of(texels.depth));
+    if (texels.channels == 4)
+        fmt::print("  alpha     {}\n", texels.premultiplied ? "associated (premultiplied)" : "unassociated (straight)");
+    fmt::print("  colour    {}\n", name_of(encoding_of(texels, false).transfer));
+    fmt::print("  levels    {}\n", info.levels);
+    for (int level = 0; level < info.levels; ++level)
+        fmt::print("  {:7}   {} x {}, {} bytes\n", level, mip_length(info.width, level), mip_length(info.height, level),
+                   level_bytes(info, level));
+}
+
+void run(const Options& options) { container_of_file(options.file) ? run_texture(options) : run_image(options); }
+
 }  // namespace
 
 void add_info(Program& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("info", "Show size, channels, depth, colour and levels of an image file",
-                                      "bandlimit info examples/coffee.png");
-    verb->add_option("FILE", options->file, "Image to look at")->required();
+    CLI::App* verb =
+        program.add_verb("info", "Show size, channels, depth, colour and levels of an image or texture file",
+                         "bandlimit info examples/coffee.png");
+    verb->add_option("FILE", options->file, "Image, .ktx2 or .dds to look at")->required();
     add_json(verb, options->json);
     program.on(
         verb, [] {}, [options] { run(*options); });

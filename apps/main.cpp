@@ -1,6 +1,9 @@
 // bandlimit VERB: parses the command line, runs the verb, and turns exceptions into one line and an exit code.
 #include <fcntl.h>
 #include <fmt/core.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <unistd.h>
 
 #include <csignal>
@@ -31,6 +34,14 @@ void handle_signals() {
 void reserve_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (fcntl(stream, F_GETFD) < 0) (void)!open("/dev/null", O_RDONLY);  // takes the lowest free number: this one
+}
+
+/// Gives buffers back when they are freed. By itself the allocator of glibc raises this limit to the largest that was
+/// freed, up to 32 MiB, and keeps what is below: a fifth more memory for `compare` of large pictures.
+void keep_no_freed_memory() {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
 }
 
 /// Sets program.selected, or returns the exit code of a command line that is wrong.
@@ -74,6 +85,7 @@ int run(const std::function<void()>& work) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_no_freed_memory();
     reserve_standard_streams();
     handle_signals();
     app::silence_codecs();
@@ -81,6 +93,7 @@ int main(int argc, char** argv) {
     program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
     program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
     app::add_resize(program);
+    app::add_mips(program);
     app::add_pattern(program);
     app::add_compare(program);
     app::add_analyze(program);

@@ -6,7 +6,7 @@
 namespace bandlimit {
 namespace {
 
-const std::array verbs{"resize", "pattern", "compare", "analyze", "audit", "info", "tour"};
+const std::array verbs{"resize", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
 const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
                        "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
 
@@ -24,7 +24,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
         std::string line, word;
     };
     for (const auto& [line, word] : {
-             Case{"", "resize, pattern, compare, analyze, audit, info, tour"},
+             Case{"", "resize, mips, pattern, compare, analyze, audit, info, tour"},
              {"frob", "\"frob\" is no verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},
@@ -98,16 +98,19 @@ TEST(CommandLine, VersionAndHelp) {
     EXPECT_TRUE(shell.files().empty());
 }
 
-/// The command that help ends with, without the program's name.
-std::string example_of(const Outcome& help) {
-    const std::string mark = "Example:\n  bandlimit ";
-    const auto begin = help.out.find(mark);
-    if (begin == std::string::npos) return "";
-    const std::string rest = help.out.substr(begin + mark.size());
-    return rest.substr(0, rest.find('\n'));
+/// The commands that help ends with, without the program's name.
+std::vector<std::string> examples_of(const Outcome& help) {
+    const std::string heading = "Example:\n", mark = "  bandlimit ";
+    std::vector<std::string> examples;
+    const auto begin = help.out.find(heading);
+    if (begin == std::string::npos) return examples;
+    std::istringstream lines(help.out.substr(begin + heading.size()));
+    for (std::string line; std::getline(lines, line) && line.starts_with(mark);)
+        examples.push_back(line.substr(mark.size()));
+    return examples;
 }
 
-TEST(CommandLine, TheExampleOfEveryHelpWorksAsPasted) {
+TEST(CommandLine, TheExamplesOfEveryHelpWorkAsPasted) {
     const Shell shell(BANDLIMIT_PROGRAM);
     add_examples(shell);
     std::vector<std::string> commands(verbs.begin(), verbs.end());
@@ -116,9 +119,12 @@ TEST(CommandLine, TheExampleOfEveryHelpWorksAsPasted) {
     for (const std::string& command : commands) {
         const Outcome help = shell(command + " --help");
         ASSERT_TRUE(succeeds(help)) << command;
-        const std::string example = example_of(help);
-        ASSERT_TRUE(example.starts_with(command)) << help;
-        EXPECT_TRUE(succeeds(shell(example))) << example;
+        const std::vector<std::string> examples = examples_of(help);
+        ASSERT_FALSE(examples.empty()) << help;
+        for (const std::string& example : examples) {
+            EXPECT_TRUE(example.starts_with(command)) << help;
+            EXPECT_TRUE(succeeds(shell(example))) << example;
+        }
     }
     EXPECT_EQ(shell.files().count("half.png") + shell.files().count("bspline.svg"), 2u);
 }
@@ -126,7 +132,7 @@ TEST(CommandLine, TheExampleOfEveryHelpWorksAsPasted) {
 TEST(CommandLine, TheTourIsAPageWithItsPictures) {
     const Shell shell(BANDLIMIT_PROGRAM);
     const Outcome help = shell("tour --help");
-    ASSERT_EQ(example_of(help), "tour out");
+    ASSERT_EQ(examples_of(help), std::vector<std::string>{"tour out"});
     const Outcome tour = shell("tour out");
     ASSERT_TRUE(succeeds(tour));
     EXPECT_NE(tour.out.find("out/index.html"), std::string::npos) << tour;

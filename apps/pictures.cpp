@@ -10,6 +10,26 @@ void gather(View<const float> from, int y, std::vector<float>& row) {
         for (int c = 0; c < from.channels; ++c) row.push_back(from(x, y, c));
 }
 
+ImageTarget target_of(View<const float> image, Depth depth) {
+    ImageTarget target;
+    target.width = image.width, target.height = image.height;
+    target.channel_names = channel_names(image.channels);
+    target.depth = depth;
+    return target;
+}
+
+void write(const std::string& path, const ImageTarget& target, View<const float> image) {
+    ImageWriter writer(path, target);
+    AnyImage stored = make_image(target.depth, image.width, 1, image.channels);
+    std::vector<float> row;
+    for (int y = 0; y < image.height; ++y) {
+        gather(image, y, row);
+        encode_row(row, false, view_of(stored), 0, writer.encoding());
+        writer.write_rows(const_view(view_of(stored)));
+    }
+    writer.finish();
+}
+
 }  // namespace
 
 std::vector<std::string> channel_names(int channels) {
@@ -23,21 +43,17 @@ std::vector<std::string> channel_names(int channels) {
 
 void write_picture(const std::string& path, View<const float> linear, Depth depth) {
     const bool is_linear = abilities_of(path).is_linear || !is_integer(depth);
-    ImageTarget target;
-    target.width = linear.width, target.height = linear.height;
-    target.channel_names = channel_names(linear.channels);
-    target.depth = depth;
+    ImageTarget target = target_of(linear, depth);
     target.alpha = alpha_among(linear.channels);
     target.transfer = is_linear ? Transfer::linear : Transfer::srgb;
-    ImageWriter writer(path, target);
-    AnyImage stored = make_image(depth, linear.width, 1, linear.channels);
-    std::vector<float> row;
-    for (int y = 0; y < linear.height; ++y) {
-        gather(linear, y, row);
-        encode_row(row, false, view_of(stored), 0, writer.encoding());
-        writer.write_rows(const_view(view_of(stored)));
-    }
-    writer.finish();
+    write(path, target, linear);
+}
+
+void write_data(const std::string& path, View<const float> values) {
+    ImageTarget target = target_of(values, Depth::u8);
+    target.transfer = Transfer::linear;
+    target.is_data = true;
+    write(path, target, values);
 }
 
 Image<float> read_picture(const std::string& path, Space space, Parallel parallel) {

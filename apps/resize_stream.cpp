@@ -4,6 +4,7 @@
 #include <array>
 
 #include "apps/common.h"
+#include "apps/source_bands.h"
 #include "bandlimit/core/pipeline.h"
 
 namespace bandlimit::app {
@@ -18,65 +19,6 @@ constexpr int wanted_bands = 8;  // for stages to overlap
 std::uint64_t row_bytes(int width, std::size_t channels, Depth depth) {
     return static_cast<std::uint64_t>(width) * channels * size_of(depth);
 }
-
-/// The rows of a file that one band after another needs; what neighbours share is read once. Where a band needs all
-/// rows, as under Edge::wrap, all bands share one copy of them.
-class SourceBands {
-public:
-    SourceBands(ImageReader& reader, int capacity) : reader_(reader), is_whole_(capacity == reader.info().height) {
-        const ImageInfo& in = reader.info();
-        bands_.resize(is_whole_ ? 1 : 2);
-        for (Band& band : bands_) band.image = make_image(in.depth, in.width, capacity, in.channels());
-    }
-
-    /// Makes band i hold rows [range), after i - 1 and while that may be in use.
-    void load(int i, IndexRange range) {
-        Band& band = of(i);
-        if (is_whole_) {
-            if (i == 0) read(band, {0, reader_.info().height}, 0);
-            return;
-        }
-        const Band& last = of(i + 1);
-        const int kept =
-            range.begin >= last.rows.begin ? std::clamp(last.rows.end - range.begin, 0, range.end - range.begin) : 0;
-        if (kept > 0) copy_rows(last.image, range.begin - last.rows.begin, kept, band.image);
-        read(band, range, kept);
-    }
-
-    SourceRows rows(int i, const Encoding& encoding) {
-        Band& band = of(i);
-        return {const_view(rows_of(view_of(band.image), 0, band.rows.end - band.rows.begin)), band.rows.begin,
-                encoding};
-    }
-
-private:
-    struct Band {
-        AnyImage image;
-        IndexRange rows{0, 0};
-    };
-    Band& of(int i) { return bands_[static_cast<std::size_t>(i) % bands_.size()]; }
-
-    /// Makes rows [range) the content of `band`, which holds the first `kept` of them.
-    void read(Band& band, IndexRange range, int kept) {
-        const int missing = range.end - range.begin - kept;
-        if (missing > 0) reader_.read_rows(range.begin + kept, rows_of(view_of(band.image), kept, missing));
-        band.rows = range;
-    }
-
-    static void copy_rows(const AnyImage& from, int first, int count, AnyImage& to) {
-        std::visit(
-            [&](auto& image) {
-                const auto v = image.view();
-                const auto kept = std::get<std::decay_t<decltype(image)>>(from).view();
-                std::copy_n(&kept(0, first), count * v.dy, &v(0, 0));
-            },
-            to);
-    }
-
-    ImageReader& reader_;
-    bool is_whole_;
-    std::vector<Band> bands_;
-};
 
 /// Output rows per band: so few that stages overlap, and neither side exceeds the bytes of a band by much.
 int rows_per_band(const Resizer& resizer, std::uint64_t source_row, std::uint64_t target_row, int target_height) {
@@ -118,9 +60,7 @@ void stream_resize(const Resizer& resizer, ImageReader& reader, const Encoding& 
     const int rows = rows_per_band(resizer, source_row, target_row, target.height);
     const int bands = (target.height - 1) / rows + 1;
     const int source_rows = largest_band(resizer, rows, bands, target.height);
-    const std::uint64_t copies = source_rows == in.height ? 1 : 2;
-    require_memory(copies * static_cast<std::uint64_t>(source_rows) * source_row +
-                       2 * static_cast<std::uint64_t>(rows) * target_row,
+    require_memory(SourceBands::bytes(in, source_rows) + 2 * static_cast<std::uint64_t>(rows) * target_row,
                    "resizing " + std::to_string(in.width) + " x " + std::to_string(in.height) + " pixels");
     SourceBands source(reader, source_rows);
     std::array<AnyImage, 2> out;

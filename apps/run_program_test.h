@@ -18,17 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "bandlimit/core/sanitized_test.h"
 #include "bandlimit/io/files_test.h"
 
 namespace bandlimit {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool is_sanitized = true;
-#elif defined(__has_feature)
-inline constexpr bool is_sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-inline constexpr bool is_sanitized = false;
-#endif
 
 /// What became of a run.
 struct Outcome {

@@ -28,6 +28,8 @@ void tour_lanczos(Tour& tour);  ///< Lanczos in two dimensions
 void tour_grids(Tour& tour);    ///< down- and upsampling, and where the samples lie
 void tour_splines(Tour& tour);  ///< linear, quadratic and cubic interpolation
 void tour_images(Tour& tour);   ///< zone plate, kernels of auto, star, photograph
+void tour_mips(Tour& tour);     ///< mip maps: light, coverage, normals, motion
+void tour_audit(Tour& tour);    ///< what other resizers do
 
 /// Values f(x) at `count` equal steps over [from, to], as a line of a plot.
 template <class F>

@@ -26,6 +26,18 @@ function(bandlimit_options target)
     endif()
 endfunction()
 
+# bandlimit_vector_sources(RESULT source...): those with code for vectors, compiled once per instruction set.
+function(bandlimit_vector_sources result)
+    set(found)
+    foreach(source IN LISTS ARGN)
+        file(STRINGS ${source} vectors REGEX "<hwy/foreach_target.h>" LIMIT_COUNT 1)
+        if(vectors)
+            list(APPEND found ${source})
+        endif()
+    endforeach()
+    set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
 # bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and
 # benchmarks, with its headers in the package. A room without files yet is an empty room.
 function(bandlimit_component name)
@@ -38,6 +50,12 @@ function(bandlimit_component name)
         file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*.cpp)
         list(FILTER sources EXCLUDE REGEX "_(test|bench)\\.cpp$")
         target_sources(${target} PRIVATE ${sources})
+        bandlimit_vector_sources(vectors ${sources})
+        if(vectors AND BANDLIMIT_SANITIZE MATCHES "address")
+            # Vectors are values, nothing points at them: it takes half the time to compile without the search for
+            # pointers into scopes that have ended.
+            set_source_files_properties(${vectors} PROPERTIES COMPILE_OPTIONS -fno-sanitize-address-use-after-scope)
+        endif()
         install(DIRECTORY ${PROJECT_SOURCE_DIR}/bandlimit/${room}
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit COMPONENT ${name}
             FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
@@ -63,9 +81,12 @@ function(bandlimit_program)
         return()
     endif()
     find_package(CLI11 REQUIRED)
+    find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+    find_library(XXHASH_LIBRARY xxhash REQUIRED)
     add_executable(bandlimit ${sources})
     target_link_libraries(bandlimit PRIVATE
-        bandlimit::core bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+        bandlimit::core bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
+    target_include_directories(bandlimit SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
     target_compile_definitions(bandlimit PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
     # Every verb includes both, and they take longer to read than the verbs.
     target_precompile_headers(bandlimit PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
@@ -73,6 +94,10 @@ function(bandlimit_program)
     file(GLOB photographs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*.png)
     bandlimit_embed_photographs(bandlimit ${photographs})
     bandlimit_options(bandlimit)
+    if(BANDLIMIT_FUZZ)
+        # Nothing runs it there: it is built to see that Clang takes it.
+        target_compile_options(bandlimit PRIVATE -O0 -fno-sanitize=all)
+    endif()
     install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()
 
@@ -116,6 +141,8 @@ function(bandlimit_app_tests)
         target_link_libraries(test_app_${name} PRIVATE bandlimit::core bandlimit::io nlohmann_json::nlohmann_json)
         target_compile_definitions(test_app_${name} PRIVATE
             BANDLIMIT_PROGRAM="$<TARGET_FILE:bandlimit>" BANDLIMIT_EXAMPLES="${PROJECT_SOURCE_DIR}/examples")
+        # They start the program and compare what it wrote: that takes less time than making them faster.
+        target_compile_options(test_app_${name} PRIVATE -O0)
         add_dependencies(test_app_${name} bandlimit)
     endforeach()
 endfunction()
@@ -136,7 +163,9 @@ function(bandlimit_consumer_tests)
     endforeach()
 endfunction()
 
-# The target headers: each header in a translation unit of its own, with what its component gives to a consumer.
+# The target headers: each header in a translation unit of its own, with what its component gives to a consumer. But
+# x.h beside x.cpp, which scripts/check-includes has include it first, is compiled alone there; only the program has its
+# precompiled header before that.
 function(bandlimit_header_checks)
     add_custom_target(headers)
     get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
@@ -155,6 +184,10 @@ function(bandlimit_header_checks)
         file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.h)
         set(units)
         foreach(header IN LISTS headers)
+            string(REGEX REPLACE "\\.h$" ".cpp" source ${PROJECT_SOURCE_DIR}/${header})
+            if(EXISTS ${source} AND NOT source MATCHES "_test\\.cpp$" AND NOT room STREQUAL "apps")
+                continue()
+            endif()
             set(unit ${PROJECT_BINARY_DIR}/headers/${header}.cpp)
             file(CONFIGURE OUTPUT ${unit} CONTENT "#include \"${header}\"\n")
             list(APPEND units ${unit})
@@ -194,6 +227,13 @@ function(bandlimit_fuzzers)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
         message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")
     endif()
+    # The fuzzers run one instruction set. That Clang takes the others too is seen without sanitizers: that is quick.
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bandlimit/*/*.cpp)
+    bandlimit_vector_sources(vectors ${sources})
+    add_library(fuzz_instruction_sets OBJECT ${vectors})
+    target_link_libraries(fuzz_instruction_sets PRIVATE bandlimit::core hwy::hwy)
+    bandlimit_options(fuzz_instruction_sets)
+    target_compile_options(fuzz_instruction_sets PRIVATE -O0 -g0 -fno-sanitize=all -UHWY_DISABLED_TARGETS)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
     foreach(source IN LISTS sources)
         cmake_path(GET source STEM name)

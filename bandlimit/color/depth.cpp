@@ -42,6 +42,10 @@ AnyView rows_of(const AnyView& view, int first, int count) {
     return std::visit([&](auto v) -> AnyView { return cropped(v, 0, first, v.width, count); }, view);
 }
 
+AnyConstView rows_of(const AnyConstView& view, int first, int count) {
+    return std::visit([&](auto v) -> AnyConstView { return cropped(v, 0, first, v.width, count); }, view);
+}
+
 AnyConstView const_view(const AnyView& view) {
     return std::visit([](auto v) -> AnyConstView { return View<const std::remove_pointer_t<decltype(v.data)>>(v); },
                       view);

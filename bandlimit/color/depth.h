@@ -38,6 +38,7 @@ AnyView view_of(AnyImage& image);
 AnyConstView const_view(const AnyView& view);
 /// Rows [first, first + count) of a view.
 AnyView rows_of(const AnyView& view, int first, int count);
+AnyConstView rows_of(const AnyConstView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);
 
 /// Code to value: exact for 0 and the largest code, else correctly rounded.

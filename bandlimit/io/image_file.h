@@ -137,6 +137,8 @@ private:
 /// Checks early what ImageWriter would refuse: parent directory missing or not writable, no regular file there, ....
 void check_output_path(const std::string& path);
 
+/// The memory, in bytes, that this machine would hand out without swapping.
+std::uint64_t available_memory();
 /// Throws std::runtime_error with `what` if `bytes` exceed the memory that this machine has available.
 void require_memory(std::uint64_t bytes, const std::string& what);
 

@@ -13,6 +13,15 @@
 namespace bandlimit {
 namespace {
 
+std::string gigabytes(std::uint64_t bytes) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(bytes < 10'000'000'000 ? 2 : 0) << static_cast<double>(bytes) / 1e9
+         << " GB";
+    return text.str();
+}
+
+}  // namespace
+
 /// What the kernel would hand out without swapping, caches it can drop included; the free pages where it does not say.
 std::uint64_t available_memory() {
     std::ifstream info("/proc/meminfo");
@@ -27,15 +36,6 @@ std::uint64_t available_memory() {
 #endif
     return std::numeric_limits<std::uint64_t>::max();
 }
-
-std::string gigabytes(std::uint64_t bytes) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(bytes < 10'000'000'000 ? 2 : 0) << static_cast<double>(bytes) / 1e9
-         << " GB";
-    return text.str();
-}
-
-}  // namespace
 
 void require_memory(std::uint64_t bytes, const std::string& what) {
     constexpr std::uint64_t always_there = 1 << 20;  // not worth a look at the system

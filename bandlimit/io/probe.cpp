@@ -17,27 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
 std::string text_of(int error) { return std::generic_category().message(error); }
-
-File open_regular(const std::string& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) {
-        if (error && error != std::errc::no_such_file_or_directory)
-            fail_file(path, "cannot be read: ", error.message(), "; check the path and its permissions");
-        fail_file(path, "does not exist; check the path");
-    }
-    if (fs::is_directory(status)) fail_file(path, "is a directory; name an image file");
-    if (!fs::is_regular_file(status)) fail_file(path, "is a device or a pipe; name an image file");
-    File file(std::fopen(path.c_str(), "rb"));
-    if (!file) fail_file(path, "cannot be read: ", text_of(errno), "; check its permissions");
-    return file;
-}
 
 /// Reads two big-endian bytes; -1 at the end of the file.
 int read_u16(std::FILE* file) {
@@ -123,6 +103,21 @@ std::uint64_t expansion_of(std::string_view compression) {
 }
 
 }  // namespace
+
+File open_regular(const std::string& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        if (error && error != std::errc::no_such_file_or_directory)
+            fail_file(path, "cannot be read: ", error.message(), "; check the path and its permissions");
+        fail_file(path, "does not exist; check the path");
+    }
+    if (fs::is_directory(status)) fail_file(path, "is a directory; name an image file");
+    if (!fs::is_regular_file(status)) fail_file(path, "is a device or a pipe; name an image file");
+    File file(std::fopen(path.c_str(), "rb"));
+    if (!file) fail_file(path, "cannot be read: ", text_of(errno), "; check its permissions");
+    return file;
+}
 
 Probe probe(const std::string& path) {
     const File file = open_regular(path);

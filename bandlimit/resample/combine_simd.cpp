@@ -27,6 +27,14 @@ namespace bandlimit {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Without loops all of four sums is one function, which compilers with sanitizers take minutes for: there it is many.
+#undef BANDLIMIT_UNROLLED
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || HWY_HAS_FEATURE(address_sanitizer)
+#define BANDLIMIT_UNROLLED HWY_NOINLINE
+#else
+#define BANDLIMIT_UNROLLED HWY_INLINE
+#endif
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Limited(D d, V sum, const float* const* near, int count, std::size_t k, float antiring) {
     V low = hn::LoadU(d, near[0] + k), high = low;
@@ -67,7 +75,7 @@ struct Vectors {
         first = hn::MulAdd(weight, samples.first, first);
         rest.MultiplyAdd(weight, samples.rest);
     }
-    HWY_INLINE void Store(const Row& row, float* HWY_RESTRICT out, std::size_t k) const {
+    BANDLIMIT_UNROLLED void Store(const Row& row, float* HWY_RESTRICT out, std::size_t k) const {
         const bool limits = row.antiring > 0;
         hn::StoreU(limits ? Limited(D(), first, row.taps + row.near_begin, row.near_count, k, row.antiring) : first,
                    D(), out + k);
@@ -150,7 +158,7 @@ private:
         (AddLine<kTaps, kStep, kLine>(), ...);
     }
     template <int kTaps, int kStep, int kLine>
-    HWY_INLINE void AddLine() {
+    BANDLIMIT_UNROLLED void AddLine() {
         Vectors<kCount, D> samples;
         samples.Load(rows_.row[0].taps[kLine] + k_);
         AddTap<kTaps, kLine>(0, s0_, samples);
@@ -164,7 +172,7 @@ private:
         if constexpr (kTap > 0 && kTap < kTaps) sum.MultiplyAdd(hn::Set(D(), rows_.row[output].weights[kTap]), samples);
     }
 
-    HWY_INLINE void Start(int output, Vectors<kCount, D>& sum) {
+    BANDLIMIT_UNROLLED void Start(int output, Vectors<kCount, D>& sum) {
         Vectors<kCount, D> samples;
         samples.Load(rows_.row[output].taps[0] + k_);
         sum.Multiply(hn::Set(D(), rows_.row[output].weights[0]), samples);
@@ -172,7 +180,7 @@ private:
 
     /// Adds lines [begin, end) to the sums [kFirst, kLast).
     template <int kFirst, int kLast>
-    HWY_INLINE void Add(int begin, int end) {
+    BANDLIMIT_UNROLLED void Add(int begin, int end) {
         const float* const* const lines = rows_.row[0].taps;
         for (int v = begin; v < end; ++v) {
             Vectors<kCount, D> samples;

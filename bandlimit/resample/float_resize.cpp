@@ -69,7 +69,6 @@ public:
         for (int first = begin; first < end; first += block_) {
             const int last = std::min(first + block_, end);
             gather_lines(plan_.rows_read(first, last));
-            look_ahead(last, end);
             if (plan_.radial) filter_radial(first, last);
             else if (plan_.x_first) filter_y(first, last, out_, outputs_);
             else {
@@ -122,7 +121,7 @@ private:
                !plan_.x_first && width_ == floats->width && !plan_.radial;
     }
     const float* direct_row(int v) const {
-        const int y = resolve(v, plan_.src.y.count, plan_.options.edge) - source_.first_row;
+        const int y = resolve(v, plan_.src.y.count, plan_.edge_y()) - source_.first_row;
         return &std::get<View<const float>>(columns_)(0, y);
     }
 
@@ -131,30 +130,7 @@ private:
     }
 
     void filter_x(View<const float> from, View<float> to) {
-        for (const TileRun& run : strip_.runs) {
-            apply_by_tiles(plan_.x, {&run, 1}, from, strip_.read.begin, to, strip_.first(), antiring());
-            prefetch(run);
-        }
-    }
-
-    /// Asks for the inputs of a run in the rows that the next block will read first: memory has nothing to do
-    /// meanwhile.
-    void prefetch([[maybe_unused]] const TileRun& run) const {
-#ifdef __GNUC__
-        constexpr std::size_t cache_line = 64 / sizeof(float);
-        const std::size_t begin = length(run.read.begin - strip_.read.begin),
-                          end = length(run.read.end - strip_.read.begin);
-        for (const float* row : ahead_)
-            for (std::size_t k = begin; k < end; k += cache_line) __builtin_prefetch(row + k, 0, 2);
-#endif
-    }
-
-    /// The rows that the block after [first, last) reads and this one does not.
-    void look_ahead(int last, int end) {
-        ahead_.clear();
-        if (!is_direct() || last >= end) return;
-        const int next = plan_.rows_read(last, std::min(last + block_, end)).end;
-        for (int v = begin_ + static_cast<int>(lines_.size()); v < next; ++v) ahead_.push_back(direct_row(v));
+        apply_by_tiles(plan_.x, strip_.runs, from, strip_.read.begin, to, strip_.first(), antiring());
     }
 
     /// Target rows [first, last), where they are floats to be stored as they come out.
@@ -187,7 +163,7 @@ private:
     }
 
     void load(int v, float* row) {
-        const int y = resolve(v, plan_.src.y.count, plan_.options.edge);
+        const int y = resolve(v, plan_.src.y.count, plan_.edge_y());
         if (y < 0) return static_cast<void>(std::fill_n(row, length(width_), 0.0f));
         float* const inside = row + length(inside_.begin - strip_.read.begin);
         if (!is_outside()) decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
@@ -229,7 +205,7 @@ private:
     int block_;  ///< output rows computed together
     SlidingWindow window_;
     Rows held_, decoded_, middle_, out_;
-    std::vector<const float*> lines_, ahead_;
+    std::vector<const float*> lines_;
     int begin_ = 0;  ///< the row of lines_[0]
     std::vector<float> opaque_;
 };

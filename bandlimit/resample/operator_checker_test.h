@@ -11,11 +11,13 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/image.h"
 #include "bandlimit/core/parallel.h"
+#include "bandlimit/core/sanitized_test.h"
 #include "bandlimit/core/view.h"
 #include "bandlimit/math/random.h"
 
@@ -153,11 +155,20 @@ public:
           output_size_(op.output_size(size)),
           channels_(channels),
           input_(size.width, size.height, channels),
-          expected_(output_size_.width, output_size_.height, channels) {
+          expected_(output_size_.width, output_size_.height, channels),
+          reference_(output_size_.width, output_size_.height, channels),
+          bound_(output_size_.width, output_size_.height, channels) {
         Random random(static_cast<std::uint64_t>(size.width * 1000 + size.height * 10 + channels));
         for (int c = 0; c < channels; ++c)
             for (int y = 0; y < size.height; ++y)
                 for (int x = 0; x < size.width; ++x) input_.view()(x, y, c) = static_cast<float>(random.uniform(-1, 2));
+        // Once for all instruction sets: this is most of the time of a check.
+        for (int c = 0; c < channels; ++c)
+            for (int y = 0; y < output_size_.height; ++y)
+                for (int x = 0; x < output_size_.width; ++x) {
+                    reference_.view()(x, y, c) = op.reference(std::as_const(input_).view(), x, y, c);
+                    bound_.view()(x, y, c) = op.bound(std::as_const(input_).view(), x, y, c);
+                }
     }
 
     /// The first problem, or nothing.
@@ -215,9 +226,8 @@ private:
         for (int c = 0; c < channels_; ++c)
             for (int y = 0; y < output_size_.height; ++y)
                 for (int x = 0; x < output_size_.width; ++x) {
-                    const View<const float> in = input_.view();
-                    const double value = expected_.view()(x, y, c), reference = op_.reference(in, x, y, c);
-                    const double bound = op_.bound(in, x, y, c);
+                    const double value = expected_.view()(x, y, c), reference = reference_.view()(x, y, c);
+                    const double bound = bound_.view()(x, y, c);
                     if (!(std::abs(value - reference) <= bound))
                         return message(where(), "output ", x, ' ', y, ' ', c, " is ", value, ", the reference ",
                                        reference, "; off by ", std::abs(value - reference), ", allowed ", bound);
@@ -274,11 +284,12 @@ private:
     Size size_, output_size_;
     int channels_;
     Image<float> input_, expected_;
+    Image<double> reference_, bound_;
 };
 
 }  // namespace checker
 
-/// Checks, for widths 1 to 33 and 1 to 4 channels, that an operator
+/// Checks, for widths 1 to 33 (under the thread sanitizer for some of them) and 1 to 4 channels, that an operator
 /// - writes every sample of its output and nothing else, and leaves its input alone;
 /// - gives the same bits when repeated, for 1, 2, 3 and 7 threads, for planar, interleaved, transposed, flipped and
 ///   padded samples on either side, for a window against the crop of the whole, and on every instruction set of this
@@ -287,6 +298,8 @@ private:
 /// The failure tells the first thing that is wrong, and where.
 [[nodiscard]] inline testing::AssertionResult check_operator(const Operator& op) {
     for (int width = 1; width <= 33; ++width) {
+        // Races need rows enough for several threads; 11 has four channels.
+        if (is_thread_sanitized && width != 5 && width != 11 && width != 17 && width != 22) continue;
         const int channels = 1 + width % 4;
         // Mostly a few rows; twice enough for several threads.
         const int height = width == 5 || width == 22 ? 150 : 1 + width * 5 % 9;

@@ -32,6 +32,7 @@ struct ResizePlan {
     std::vector<Strip> strips;      ///< of separable kernels
     std::optional<BytePlan> bytes;  ///< where codes of 8 bits may run in integers; refers to x and y
 
+    Edge edge_y() const { return options.edge_y.value_or(options.edge); }
     IndexRange rows_read(int first, int last) const {
         return radial ? radial->rows_read(first, last) : indices_read(y, first, last);
     }

@@ -48,13 +48,14 @@ struct RadialBank::Disc {
 };
 
 RadialBank::RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y,
-                       Edge edge)
+                       Edge edge_x, Edge edge_y)
     : x_(src_x, dst_x),
       y_(src_y, dst_y),
       width_(src_x.count),
       height_(src_y.count),
       outputs_(dst_x.count),
-      edge_(edge),
+      edge_x_(edge_x),
+      edge_y_(edge_y),
       radius_(kernel.radius) {
     check_radial("RadialBank", kernel);
     const auto entries = static_cast<std::size_t>(std::ceil(radius_ * table_density)) + 2;
@@ -109,18 +110,21 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
         if (found == discs.end()) found = discs.emplace(at_x.phase, disc_at(at_x, at_y)).first;
         const Disc& disc = found->second;
         std::fill(sums.begin(), sums.end(), 0.0f);
-        double read = 0;  // sum of the weights of samples that are read
+        double read = 0;  // sum of the weights that are not dropped
         bool has_near = false;
         const float* weight = disc.weights.data();
         for (int j = disc.y.first; j <= disc.y.last; ++j) {
-            const float* const line = resolve(static_cast<int>(at_y.whole) + j, height_, edge_) < 0
+            const float* const line = resolve(static_cast<int>(at_y.whole) + j, height_, edge_y_) < 0
                                           ? nullptr
                                           : rows[static_cast<int>(at_y.whole) + j];
             const bool near_row = j >= disc.near_y.first && j <= disc.near_y.last;
             for (int k = disc.x.first; k <= disc.x.last; ++k, ++weight) {
-                const int source = resolve(static_cast<int>(at_x.whole) + k, width_, edge_);
-                if (*weight == 0 || source < 0 || !line) continue;
+                const int source = resolve(static_cast<int>(at_x.whole) + k, width_, edge_x_);
+                const bool is_dropped =
+                    (source < 0 && edge_x_ == Edge::renormalize) || (!line && edge_y_ == Edge::renormalize);
+                if (*weight == 0 || is_dropped) continue;
                 read += static_cast<double>(*weight);
+                if (source < 0 || !line) continue;
                 const bool is_near = near_row && k >= disc.near_x.first && k <= disc.near_x.last;
                 for (int c = 0; c < channels; ++c) {
                     const float value = line[static_cast<std::ptrdiff_t>(source) * channels + c];
@@ -133,7 +137,8 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
                 has_near = has_near || is_near;
             }
         }
-        const double divisor = edge_ == Edge::renormalize ? read : disc.sum;
+        const bool rescales = edge_x_ == Edge::renormalize || edge_y_ == Edge::renormalize;
+        const double divisor = rescales ? read : disc.sum;
         if (!(std::abs(divisor) > 1e-9))
             fail("RadialBank: output (", i, ", ", y,
                  ") has no weight inside the source; use Edge::clamp, or axes that overlap");

@@ -39,15 +39,14 @@ RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double pha
 class RadialBank {
 public:
     RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y,
-               Edge edge);
+               Edge edge_x, Edge edge_y);
 
     /// The rows of the source [begin, end) that output rows [first, last) read; they may lie outside it.
     IndexRange rows_read(int first, int last) const;
     int source_height() const { return height_; }
-    Edge edge() const { return edge_; }
 
     /// Computes output row y from source rows with interleaved channels: rows[v] for each v of rows_read(y, y + 1),
-    /// where rows that `edge` does not read may be null.
+    /// where rows that the edge of y does not read may be null.
     void row(int y, ConstLines rows, int channels, float antiring, float* out) const;
 
 private:
@@ -57,7 +56,7 @@ private:
 
     Mapping x_, y_;
     int width_, height_, outputs_;
-    Edge edge_;
+    Edge edge_x_, edge_y_;
     double radius_;
     std::vector<double> table_;
 };

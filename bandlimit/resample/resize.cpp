@@ -74,11 +74,11 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
         std::make_unique<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}, {}});
     const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
     if (kernel && is_radial(*kernel)) {
-        plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge);
+        plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge, plan->edge_y());
         plan->kernel_x = plan->kernel_y = kernel->name;
     } else {
         plan->x = bank_of(options.reconstruction, src.x, dst.x, options.edge, plan->kernel_x);
-        plan->y = bank_of(options.reconstruction, src.y, dst.y, options.edge, plan->kernel_y);
+        plan->y = bank_of(options.reconstruction, src.y, dst.y, plan->edge_y(), plan->kernel_y);
         const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
         plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
         plan->strips = make_strips(*plan);
@@ -119,7 +119,7 @@ const std::string& Resizer::kernel_y() const { return plan_->kernel_y; }
 IndexRange Resizer::rows_needed(int first, int last) const {
     if (first < 0 || first >= last || last > plan_->dst.y.count)
         fail("Resizer::rows_needed: rows ", first, " to ", last, " of ", plan_->dst.y.count, "; pass a part of them");
-    return stored(plan_->rows_read(first, last), plan_->src.y.count, plan_->options.edge);
+    return stored(plan_->rows_read(first, last), plan_->src.y.count, plan_->edge_y());
 }
 
 bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {

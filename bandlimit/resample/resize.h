@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,6 +27,7 @@ Kernel auto_kernel(const Axis& src, const Axis& dst);
 struct ResizeOptions {
     Reconstruction reconstruction = Auto{};
     Edge edge = Edge::renormalize;
+    std::optional<Edge> edge_y = {};  ///< above and below, where that is another
     /// Deringing, 0 to 1: how much of what overshoots the range of the nearest input samples (those within one pitch of
     /// the coarser grid) is taken away. Not linear; 0 is off.
     double antiring = 0;

@@ -10,93 +10,132 @@ namespace bandlimit {
 namespace {
 
 constexpr std::ptrdiff_t tile_bytes = 16 << 10;  // of inputs: stays in the first cache beside the outputs
-constexpr int run_multiple = 4;                  // pixels that fill a cache line
-
-/// How the samples of some rows lie side by side in a tile, at each x.
-enum class Lanes {
-    by_channel,  ///< (channel, row), where rows are contiguous: samples of a row become rows of the tile
-    by_pixel,    ///< (row, channel), where rows are contiguous and pixels of four fill a block of a vector
-    scattered    ///< (row, channel), from anywhere
-};
+constexpr int run_multiple = 16;                 // outputs of a run: whole vectors of stored pixels
 
 template <class T>
 bool is_interleaved(const View<T>& v) {
     return v.dx == v.channels && (v.channels == 1 || v.dc == 1);
 }
 
-template <class A, class B>
-Lanes lanes_of(const View<A>& src, const View<B>& dst) {
-    if (!is_interleaved(src) || !is_interleaved(dst)) return Lanes::scattered;
-    return src.channels == 4 ? Lanes::by_pixel : Lanes::by_channel;
+/// Calls visit(pixel 0 of one channel of a row, its lane), where lanes are (row, channel).
+template <class T, class Visit>
+void for_each_row(View<T> v, Visit visit) {
+    for (int y = 0; y < v.height; ++y)
+        for (int c = 0; c < v.channels; ++c) visit(&v(0, y, c), y * v.channels + c);
 }
 
-/// Some rows of an image for a run of x.
-class Tile {
-public:
-    /// Room for pixels [-slack, width) of so many rows; `scratch` keeps its memory from call to call.
-    Tile(Lanes lanes, int rows, int channels, int slack, int width, std::vector<float, SampleAllocator<float>>& scratch)
-        : lanes_(lanes), rows_(rows), stride_(std::ptrdiff_t{rows} * channels) {
-        const std::size_t needed = static_cast<std::size_t>(slack + width) * static_cast<std::size_t>(stride_);
-        if (scratch.size() < needed) scratch.resize(needed);
-        samples_ = scratch.data() + slack * stride_;
-    }
-    float* at(int x) const { return samples_ + x * stride_; }
+/// The next index that begins a block of pixels to be transposed.
+int aligned(int x) { return (x + 3) / 4 * 4; }
 
-    /// Pixels [begin, begin + width) of the view, which has the tile's rows, to the tile from x on.
-    void load(View<const float> v, int begin, int width, int x) const {
-        const float* const from = &v(begin, 0);
-        switch (lanes_) {
-            case Lanes::by_channel: return rows_to_lanes(from, v.dy, rows_, width * v.channels, at(x), rows_);
-            case Lanes::by_pixel: return pixels_to_lanes(from, v.dy, rows_, width, at(x), stride_);
-            case Lanes::scattered:
-                return for_each_row(v, begin, [&](const float* row, int lane) {
-                    float* to = at(x) + lane;
-                    for (int i = 0; i < width; ++i, row += v.dx, to += stride_) *to = *row;
-                });
-        }
-    }
-    /// Pixels [0, width) of the tile to the view from `begin` on.
-    void store(View<float> v, int begin, int width) const {
-        float* const to = &v(begin, 0);
-        switch (lanes_) {
-            case Lanes::by_channel: return lanes_to_rows(samples_, rows_, rows_, width * v.channels, to, v.dy);
-            case Lanes::by_pixel: return lanes_to_pixels(samples_, stride_, rows_, width, to, v.dy);
-            case Lanes::scattered:
-                return for_each_row(v, begin, [&](float* row, int lane) {
-                    const float* from = samples_ + lane;
-                    for (int i = 0; i < width; ++i, row += v.dx, from += stride_) *row = *from;
-                });
-        }
-    }
+/// Lets columns[i] be column i of samples, of which there are at least so many.
+void make_columns(std::vector<float, SampleAllocator<float>>& samples, std::vector<float*>& columns, int count,
+                  std::size_t stride) {
+    const auto wanted = static_cast<std::size_t>(count);
+    if (samples.size() < wanted * stride) samples.resize(wanted * stride);
+    columns.resize(samples.size() / stride);
+    for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = samples.data() + i * stride;
+}
+
+/// Columns of some rows of an image, transposed. It slides along x: columns that several runs read are loaded once.
+class ColumnTile {
+public:
+    /// Begins anew, without columns, for rows laid out like those of `from` whose results go to rows like those of
+    /// `to`.
+    void start(const View<const float>& from, const View<float>& to);
+
+    /// Lets the columns held begin at x. Where x lies outside of them, none are left.
+    void begin_at(int x);
+    /// The column behind the last one held.
+    int end() const { return end_; }
+    /// Appends columns of the rows, which start() has seen the like of.
+    void append(View<const float> columns);
+    void append_zeros();
+
+    /// Computes a run of outputs, whose inputs are held from run.read.begin on, into `to`, whose column 0 is the first.
+    void filter(const Bank& bank, const TileRun& run, float antiring, View<float> to);
 
 private:
-    /// Calls visit(pixel `begin` of one channel of a row, its lane).
-    template <class T, class Visit>
-    void for_each_row(View<T> v, int begin, Visit visit) const {
-        for (int y = 0; y < rows_; ++y)
-            for (int c = 0; c < v.channels; ++c) visit(&v(begin, y, c), y * v.channels + c);
-    }
+    /// How the samples of the rows lie side by side at each x.
+    enum class Lanes {
+        by_channel,  ///< (channel, row), where rows are contiguous: samples of a row become rows of the tile
+        by_pixel,    ///< (row, channel), where rows are contiguous and pixels of four fill a block of a vector
+        scattered    ///< (row, channel), from anywhere
+    };
+    using Samples = std::vector<float, SampleAllocator<float>>;
 
-    Lanes lanes_;
-    int rows_;
-    std::ptrdiff_t stride_;
-    float* samples_ = nullptr;
+    std::size_t stride() const { return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(channels_); }
+    float* make_room(int columns);
+    void load(View<const float> from, float* to) const;
+    void store(View<float> to) const;
+
+    Lanes lanes_ = Lanes::scattered;
+    int rows_ = 0, channels_ = 1, begin_ = 0, end_ = 0;
+    Samples in_, out_;
+    std::vector<float*> from_, to_;  ///< the columns of both
 };
 
-/// Loads what a run of outputs reads; the edge resolves what lies outside of src, which begins at input `first`.
-void load_inputs(const Tile& tile, const Bank& bank, IndexRange read, View<const float> src, int first,
-                 std::size_t lanes) {
-    const int begin = std::clamp(first, read.begin, read.end), end = std::clamp(first + src.width, begin, read.end);
-    // A few inputs more, so that blocks begin where cache lines do.
-    const int more = (begin - first) % run_multiple;
-    if (begin < end) tile.load(src, begin - first - more, end - begin + more, begin - read.begin - more);
-    const auto load_outside = [&](int v) {
-        const int x = resolve(v, bank.inputs, bank.edge);
-        if (x >= 0) tile.load(src, x - first, 1, v - read.begin);
-        else std::fill_n(tile.at(v - read.begin), lanes, 0.0f);
-    };
-    for (int v = read.begin; v < begin; ++v) load_outside(v);
-    for (int v = end; v < read.end; ++v) load_outside(v);
+void ColumnTile::start(const View<const float>& from, const View<float>& to) {
+    rows_ = from.height;
+    channels_ = from.channels;
+    begin_ = end_ = 0;
+    if (!is_interleaved(from) || !is_interleaved(to)) lanes_ = Lanes::scattered;
+    else lanes_ = channels_ == 4 ? Lanes::by_pixel : Lanes::by_channel;
+    from_.clear();
+    to_.clear();
+}
+
+void ColumnTile::begin_at(int x) {
+    if (x < begin_ || x >= end_) {
+        begin_ = end_ = x;
+        return;
+    }
+    const auto left = static_cast<std::size_t>(end_ - x), passed = static_cast<std::size_t>(x - begin_);
+    std::copy_n(in_.data() + passed * stride(), left * stride(), in_.data());
+    begin_ = x;
+}
+
+float* ColumnTile::make_room(int columns) {
+    const int held = end_ - begin_;
+    end_ += columns;
+    if (static_cast<std::size_t>(end_ - begin_) > from_.size()) make_columns(in_, from_, end_ - begin_, stride());
+    return from_[static_cast<std::size_t>(held)];
+}
+
+void ColumnTile::append(View<const float> columns) { load(columns, make_room(columns.width)); }
+
+void ColumnTile::append_zeros() { std::fill_n(make_room(1), stride(), 0.0f); }
+
+void ColumnTile::load(View<const float> v, float* to) const {
+    const auto step = static_cast<std::ptrdiff_t>(stride());
+    switch (lanes_) {
+        case Lanes::by_channel: return rows_to_lanes(v.data, v.dy, rows_, v.width * channels_, to, rows_);
+        case Lanes::by_pixel: return pixels_to_lanes(v.data, v.dy, rows_, v.width, to, step);
+        case Lanes::scattered:
+            return for_each_row(v, [&](const float* row, int lane) {
+                float* p = to + lane;
+                for (int i = 0; i < v.width; ++i, row += v.dx, p += step) *p = *row;
+            });
+    }
+}
+
+void ColumnTile::store(View<float> v) const {
+    const auto step = static_cast<std::ptrdiff_t>(stride());
+    switch (lanes_) {
+        case Lanes::by_channel: return lanes_to_rows(out_.data(), rows_, rows_, v.width * channels_, v.data, v.dy);
+        case Lanes::by_pixel: return lanes_to_pixels(out_.data(), step, rows_, v.width, v.data, v.dy);
+        case Lanes::scattered:
+            return for_each_row(v, [&](float* row, int lane) {
+                const float* p = out_.data() + lane;
+                for (int i = 0; i < v.width; ++i, row += v.dx, p += step) *row = *p;
+            });
+    }
+}
+
+void ColumnTile::filter(const Bank& bank, const TileRun& run, float antiring, View<float> to) {
+    const int outputs = run.last - run.first;
+    if (static_cast<std::size_t>(outputs) > to_.size()) make_columns(out_, to_, outputs, stride());
+    combine(bank, run.first, run.last, antiring, from_.data() - run.read.begin, to_.data(), stride());
+    store(cropped(to, 0, 0, outputs, rows_));
 }
 
 /// As many rows as fill a tile, in whole vectors where their samples are side by side.
@@ -129,27 +168,29 @@ std::vector<TileRun> tile_runs(const Bank& bank) {
 
 void apply_by_tiles(const Bank& bank, std::span<const TileRun> runs, View<const float> src, int first_input,
                     View<float> dst, int first_output, float antiring) {
-    thread_local std::vector<float, SampleAllocator<float>> in_scratch, out_scratch;
-    thread_local std::vector<const float*> from;
-    thread_local std::vector<float*> to;
-    const Lanes lanes = lanes_of(src, dst);
-    const int most = rows_of_tile(src.channels);
+    thread_local ColumnTile tile;
+    const int most = rows_of_tile(src.channels), last_input = first_input + src.width;
     for (int y = 0; y < src.height; y += most) {
         const int rows = std::min(most, src.height - y);
-        const auto length = static_cast<std::size_t>(rows) * static_cast<std::size_t>(src.channels);
-        const View<const float> src_rows = cropped(src, 0, y, src.width, rows);
-        const View<float> dst_rows = cropped(dst, 0, y, dst.width, rows);
+        const View<const float> from = cropped(src, 0, y, src.width, rows);
+        const View<float> to = cropped(dst, 0, y, dst.width, rows);
+        const auto append = [&](int begin, int width) {
+            tile.append(cropped(from, begin - first_input, 0, width, rows));
+        };
+        tile.start(from, to);
         for (const TileRun& run : runs) {
-            const int inputs = run.read.end - run.read.begin, outputs = run.last - run.first;
-            const Tile in(lanes, rows, src.channels, run_multiple, inputs, in_scratch);
-            const Tile out(lanes, rows, src.channels, 0, outputs, out_scratch);
-            from.clear();
-            for (int i = 0; i < inputs; ++i) from.push_back(in.at(i));
-            to.clear();
-            for (int i = 0; i < outputs; ++i) to.push_back(out.at(i));
-            load_inputs(in, bank, run.read, src_rows, first_input, length);
-            combine(bank, run.first, run.last, antiring, from.data() - run.read.begin, to.data(), length);
-            out.store(dst_rows, run.first - first_output, outputs);
+            tile.begin_at(run.read.begin);
+            while (tile.end() < run.read.end) {
+                const int begin = tile.end();
+                if (begin >= first_input && begin < last_input) {
+                    append(begin, std::min(aligned(run.read.end - first_input) + first_input, last_input) - begin);
+                } else if (const int x = resolve(begin, bank.inputs, bank.edge); x >= 0) {
+                    append(x, 1);
+                } else {
+                    tile.append_zeros();
+                }
+            }
+            tile.filter(bank, run, antiring, cropped(to, run.first - first_output, 0, run.last - run.first, rows));
         }
     }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/core/sanitized_test.h"
 #include "bandlimit/math/bessel.h"
 
 namespace bandlimit {
@@ -83,6 +84,7 @@ TEST(Render, ExactUnderAnyKernelIsTheLimitOfSupersampling) {
     for (const Signal& signal : signals)
         for (const Kernel& kernel :
              {box(), tent(), quadratic_bspline(), mitchell(), lanczos(3), gaussian(0.6), kaiser(6, 8)}) {
+            if (is_sanitized && kernel.radius > 1) continue;  // the same code for longer
             const Image<float> exact = render(signal, 24, 20, Sampling::exact(kernel));
             const Image<float> sampled = render(signal, 24, 20, Sampling::supersampled(kernel, 32));
             const int taps = static_cast<int>(2 * kernel.radius * 32);

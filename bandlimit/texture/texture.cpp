@@ -50,13 +50,23 @@ const AnyImage& Texture::image(int level, int layer, int face) const {
     return levels.at(static_cast<std::size_t>(level)).at(static_cast<std::size_t>(layer * faces() + face));
 }
 
+std::uint64_t TextureShape::image_bytes(int level) const {
+    return static_cast<std::uint64_t>(mip_length(width, level)) *
+           static_cast<std::uint64_t>(mip_length(height, level)) * static_cast<std::uint64_t>(format.channels) *
+           size_of(format.depth);
+}
+
+TextureShape Texture::shape() const {
+    return {format, width(), height(), static_cast<int>(levels.size()), layers, is_cube, is_array};
+}
+
 void check_texture(const Texture& texture) {
     const TexelFormat& f = texture.format;
     require(f.channels == 1 || f.channels == 2 || f.channels == 4, f.channels, " channels; need 1, 2 or 4");
     require(!f.srgb || f.depth == Depth::u8, "sRGB codes of ", name_of(f.depth), "; only u8 has them");
     require(!f.premultiplied || f.channels == 4, "premultiplied colour without alpha; need 4 channels");
-    require(texture.layers >= 1 && (texture.is_array || texture.layers == 1), texture.layers,
-            " layers; need 1, or an array of at least 1");
+    require(texture.layers >= 1 && texture.layers <= (texture.is_array ? most_layers : 1), texture.layers,
+            " layers; need 1, or an array of 1 to ", most_layers);
     require(!texture.levels.empty() && !texture.levels[0].empty(), "no image; need level 0");
     const int width = texture.width(), height = texture.height();
     require(width >= 1 && height >= 1, "size ", width, " x ", height, "; need at least 1 x 1");

@@ -1,0 +1,314 @@
+// bandlimit mips: the command line of the mip chains.
+#include <fmt/core.h>
+
+#include "apps/batch.h"
+#include "apps/common.h"
+#include "apps/mips_run.h"
+
+namespace bandlimit::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+    std::vector<std::string> files;               ///< IN... OUT
+    std::vector<CLI::Option*> of_levels, of_one;  ///< options that --keep-levels, or --batch, does not take
+    MipsJob job;
+    bool is_batch = false;
+    BatchJob batch;
+    Parallel parallel;
+    bool json = false;
+};
+
+/// Throws UsageError if one of these options was given.
+void refuse(const std::vector<CLI::Option*>& options, const std::string& by, const std::string& reason) {
+    for (const CLI::Option* option : options)
+        if (option->count() > 0)
+            throw UsageError(
+                fmt::format("{} does not go with {}: {}; leave one of them out", option->get_name(), by, reason));
+}
+
+/// Splits the files into inputs and output, and checks what the command line alone shows.
+void check(Options& o) {
+    if (o.files.size() < 2)
+        throw UsageError(o.is_batch ? "mips --batch: a directory is missing; give DIR and OUTDIR"
+                                    : "mips: a file is missing; give IN and OUT, as mips wall.png wall.ktx2");
+    if (o.is_batch && o.files.size() > 2)
+        throw UsageError(fmt::format("mips --batch: {} directories; give DIR and OUTDIR", o.files.size()));
+    o.job.output = o.files.back();
+    o.job.inputs.assign(o.files.begin(), o.files.end() - 1);
+    if (o.job.keep_levels) refuse(o.of_levels, "--keep-levels", "levels are copied as they are");
+    if (!o.is_batch) return check_job(o.job);
+    refuse(o.of_one, "--batch", "every picture makes a texture of its own");
+    o.batch.in = o.files.front(), o.batch.out = o.files.back();
+    o.batch.recipe = o.job.recipe;
+    o.batch.parallel = o.parallel;
+    if (o.job.recipe.role) check_recipe(o.job.recipe, *o.job.recipe.role);
+}
+
+std::string_view name_of(MipSource from) { return from == MipSource::base ? "base" : "previous"; }
+
+void note_choices(const MipsJob& job, const MipsReport& report) {
+    const std::string& path = job.inputs.front();
+    if (report.role && report.role->from != "option")
+        note(fmt::format("{} has the role {}, because {}; --role chooses another", path, name_of(report.role->role),
+                         report.role->because.empty() ? "its name says nothing else"
+                                                      : "its name holds \"" + report.role->because + "\""));
+    for (const std::string& text : notes_of(report, path)) note(text);
+}
+
+ordered_json levels_json(const MipsReport& report) {
+    ordered_json levels = ordered_json::array();
+    for (const MipsReport::Level& l : report.levels) {
+        levels.push_back({{"level", levels.size()}, {"width", l.width}, {"height", l.height}, {"bytes", l.bytes}});
+        if (!l.file.empty()) levels.back()["file"] = l.file;
+        if (l.coverage) levels.back()["coverage"] = *l.coverage;
+    }
+    return levels;
+}
+
+ordered_json report_of(const Options& o, const MipsReport& r, double total) {
+    ordered_json report{{"input", o.job.inputs},
+                        {"output",
+                         {{"file", o.job.output},
+                          {"format", r.format},
+                          {"width", r.levels.front().width},
+                          {"height", r.levels.front().height},
+                          {"levels", r.levels.size()},
+                          {"layers", r.layers},
+                          {"faces", r.faces},
+                          {"depth", name_of(r.depth)},
+                          {"channels", r.channels},
+                          {"srgb", r.is_srgb},
+                          {"premultiplied", r.is_premultiplied}}}};
+    if (r.role) {
+        report["role"] = name_of(r.role->role);
+        report["role_from"] = r.role->from;
+        report["role_because"] = r.role->because;
+        report["filter"] = {{"x", r.filter_x}, {"y", r.filter_y}};
+        report["from"] = name_of(o.job.recipe.from);
+        report["edge"] = {{"x", name_of(r.edge_x)}, {"y", name_of(r.edge_y)}};
+    }
+    report["levels"] = levels_json(r);
+    report["threads"] = o.parallel.count();
+    report["seconds"] = {{"read", r.read}, {"filter", r.filter}, {"write", r.write}, {"total", total}};
+    return report;
+}
+
+std::string twice(std::string_view x, std::string_view y) {
+    return x == y ? std::string(x) : fmt::format("{} along x, {} along y", x, y);
+}
+
+void print(const Options& o, const MipsReport& r) {
+    fmt::print("{}: {}", o.job.output, r.format);
+    if (r.layers > 1) fmt::print(", {} layers", r.layers);
+    if (r.faces > 1) fmt::print(", {} faces", r.faces);
+    fmt::print("\n  texels    {} x {}, {} channel{} of {}{}{}\n", r.levels.front().width, r.levels.front().height,
+               r.channels, r.channels == 1 ? "" : "s", name_of(r.depth), r.is_srgb ? ", sRGB" : "",
+               r.is_premultiplied ? ", premultiplied" : "");
+    if (r.role) {
+        fmt::print("  role      {}{}\n", name_of(r.role->role),
+                   r.role->because.empty() ? "" : " (" + r.role->because + ")");
+        fmt::print("  filter    {}, from {}\n", twice(r.filter_x, r.filter_y),
+                   o.job.recipe.from == MipSource::base ? "level 0" : "the level above");
+        fmt::print("  edge      {}\n",
+                   r.faces > 1 ? "the neighbouring face" : twice(name_of(r.edge_x), name_of(r.edge_y)));
+    }
+    for (std::size_t level = 0; level < r.levels.size(); ++level) {
+        const MipsReport::Level& l = r.levels[level];
+        fmt::print("  level {:<3} {:>5} x {:<5} {:>11} bytes", level, l.width, l.height, l.bytes);
+        if (l.coverage) fmt::print("  {:6.2f} % pass", 100 * *l.coverage);
+        if (!l.file.empty()) fmt::print("  {}", l.file);
+        fmt::print("\n");
+    }
+}
+
+void run_one(const Options& o) {
+    const Stopwatch watch;
+    MipsJob job = o.job;
+    job.shows_progress = true;
+    const MipsReport report = make_texture(job, o.parallel);
+    note_choices(o.job, report);
+    if (o.json) print_json(report_of(o, report, watch.total()));
+    else print(o, report);
+}
+
+ordered_json report_of(const BatchReport& r) {
+    ordered_json failed = ordered_json::array();
+    for (const BatchReport::Failure& f : r.failed) failed.push_back({{"file", f.file}, {"error", f.error}});
+    return {{"files", r.files()},     {"made", r.made},       {"skipped", r.skipped},
+            {"left_out", r.left_out}, {"failed", failed},     {"notes", r.notes},
+            {"roles", r.roles},       {"seconds", r.seconds}, {"megapixels_per_second", r.megapixels_per_second()}};
+}
+
+void print(const BatchReport& r) {
+    fmt::print("{} pictures: {} made, {} up to date, {} failed", r.files(), r.made, r.skipped, r.failed.size());
+    if (r.left_out > 0) fmt::print(", {} more left out by the rules", r.left_out);
+    fmt::print("; {:.1f} s", r.seconds);
+    if (r.made > 0) fmt::print(", {:.1f} MPix/s", r.megapixels_per_second());
+    fmt::print("\n");
+    for (const auto& [role, count] : r.roles) fmt::print("  {:<13} {:>6}\n", role, count);
+    if (!r.failed.empty()) fmt::print("failed:\n");
+    for (const BatchReport::Failure& f : r.failed) fmt::print("  {}: {}\n", f.file, f.error);
+}
+
+void print(const std::vector<PlannedFile>& plan) {
+    for (const PlannedFile& file : plan)
+        fmt::print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
+                   file.because.empty() ? "" : " (" + file.because + ")");
+}
+
+ordered_json report_of(const std::vector<PlannedFile>& plan) {
+    ordered_json files = ordered_json::array();
+    for (const PlannedFile& file : plan)
+        files.push_back({{"file", file.input},
+                         {"output", file.output},
+                         {"state", file.state},
+                         {"role", file.role},
+                         {"role_because", file.because}});
+    return {{"plan", files}};
+}
+
+void run_many(const Options& o) {
+    if (o.batch.is_dry) {
+        const std::vector<PlannedFile> plan = plan_batch(o.batch);
+        return o.json ? print_json(report_of(plan)) : print(plan);
+    }
+    const BatchReport report = run_batch(o.batch);
+    for (const std::string& text : report.notes) note(text);
+    o.json ? print_json(report_of(report)) : print(report);
+    if (!report.failed.empty())
+        throw std::runtime_error(fmt::format("{} of {} pictures failed; mend those that are listed, and run this again",
+                                             report.failed.size(), report.files()));
+}
+
+using Setter = void (*)(MipsRecipe&, const std::string&);
+
+CLI::Option* add_setter(CLI::App* verb, const std::shared_ptr<Options>& o, const std::string& name, Setter set,
+                        const std::string& help, const std::string& type) {
+    return verb
+        ->add_option_function<std::string>(
+            name, [o, set](const std::string& s) { set(o->job.recipe, s); }, help)
+        ->type_name(type);
+}
+
+/// Adds the options that say how levels are made, and returns them.
+std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Options>& o) {
+    MipsRecipe& recipe = o->job.recipe;
+    std::vector<CLI::Option*> options;
+    options.push_back(add_setter(
+        verb, o, "--role", set_role,
+        "What the texels are, which decides what their mean is; auto (default) guesses from the file's name\n"
+        "color: light in sRGB codes, weighted by alpha; color-linear: the same in linear codes\n"
+        "alpha-tested: color; at each level as many texels pass the threshold as at level 0\n"
+        "normal: unit vectors; roughness: grows by what --normal loses; height, mask, data: as they are",
+        "auto|ROLE"));
+    options.push_back(
+        verb->add_option("--normal", recipe.normal, "The normal map of the same surface, for --role roughness")
+            ->type_name("FILE"));
+    options.push_back(verb->add_option_function<double>(
+                              "--alpha-threshold", [o](double t) { set_threshold(o->job.recipe, t); },
+                              "Alpha that passes, for --role alpha-tested; default 0.5")
+                          ->type_name("T"));
+    options.push_back(add_setter(verb, o, "--filter", set_filter,
+                                 "A kernel (bandlimit analyze --list), auto (default: shrink3), downsample8 (eight\n"
+                                 "bilinear reads, as shaders run it), or a taps.json of factor 2",
+                                 "K|auto|downsample8"));
+    options.push_back(add_setter(verb, o, "--from", set_from,
+                                 "Make each level from the level above, before rounding (previous, the default), or\n"
+                                 "from level 0 (base: exact, and slower)",
+                                 "base|previous"));
+    options.push_back(
+        add_setter(verb, o, "--edge", set_edge,
+                   "What lies beyond the borders: wrap for textures that tile, else clamp, reflect, zero\n"
+                   "or renormalize (the default); one for both axes, or two as wrap,clamp",
+                   "EDGE|X,Y"));
+    options.push_back(verb->add_option("--levels", recipe.levels, "How many levels, level 0 included; default: all")
+                          ->check(CLI::Range(1, 31))
+                          ->type_name("N"));
+    options.push_back(add_space(verb, recipe.space)
+                          ->description("What the input's codes mean: auto (default: what role and file say), srgb,\n"
+                                        "linear, or data"));
+    options.push_back(add_depth(verb, recipe.depth)->description("Depth of the texels; default: that of the input"));
+    options.push_back(verb->add_option_function<int>(
+                              "--channels", [o](int n) { set_channels(o->job.recipe, n); },
+                              "Channels of the texels; default: what picture and role need (RGB becomes RGBA, grey\n"
+                              "data one channel, grey sRGB colour RGBA)")
+                          ->type_name("1|2|4"));
+    options.push_back(verb->add_flag("--two-channel", recipe.two_channel,
+                                     "Keep x and y of normals, for shaders and encoders (BC5) that make z of them"));
+    options.push_back(verb->add_flag("--premultiplied", recipe.premultiplied,
+                                     "Store colour multiplied by alpha, and say so in the file"));
+    return options;
+}
+
+/// "512MB", "4G": a number with a unit of 1024 or its powers. Throws UsageError, naming the option.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+    std::string bytes = text;
+    try {
+        if (CLI::AsSizeValue(false)(bytes).empty() && parse_number(option, bytes) >= 1) return std::stoull(bytes);
+    } catch (const CLI::Error&) {  // of the unit
+    }
+    throw UsageError(fmt::format("{}: \"{}\" is no amount of memory; write as 512MB or 4GB", option, text));
+}
+
+void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {
+    CLI::Option* batch = verb->add_flag(
+        "--batch", o->is_batch,
+        "Make a texture of every image below DIR, at the same place below OUTDIR, in files of --format;\n"
+        "what is up to date is skipped, by content, and what fails does not stop the others");
+    verb->add_option_function<std::string>(
+            "--format",
+            [o](const std::string& s) {
+                if (s != "ktx2" && s != "dds")
+                    throw UsageError("--format: \"" + s + "\" is unknown; choose ktx2 or dds");
+                o->batch.format = s == "dds" ? Container::dds : Container::ktx2;
+            },
+            "Kind of files that --batch makes; default ktx2")
+        ->needs(batch)
+        ->type_name("ktx2|dds");
+    verb->add_option("--rules", o->batch.rules,
+                     "Which pictures of a batch have which role and options: a JSON file, see docs/batch.md")
+        ->needs(batch)
+        ->type_name("FILE");
+    verb->add_option_function<std::string>(
+            "--memory", [o](const std::string& s) { o->batch.memory = parse_bytes("--memory", s); },
+            "Memory for the pictures of a batch that are worked on at a time, as 4GB; default: a quarter of\n"
+            "what is available; one picture is always worked on")
+        ->needs(batch)
+        ->type_name("SIZE");
+    verb->add_flag("--dry-run", o->batch.is_dry, "Show what --batch would do, with the roles it guesses, and stop")
+        ->needs(batch);
+}
+
+}  // namespace
+
+void add_mips(Program& program) {
+    auto o = std::make_shared<Options>();
+    CLI::App* verb = program.add_verb("mips", "Make textures with all their mip levels, by what their texels mean",
+                                      "bandlimit mips examples/coffee.png coffee.ktx2 --role color\n"
+                                      "  bandlimit mips examples/gravel.png gravel_%d.png --role height --edge wrap\n"
+                                      "  bandlimit mips coffee.ktx2 coffee.dds --keep-levels\n"
+                                      "  bandlimit mips --batch examples textures --edge wrap");
+    verb->add_option("FILES", o->files,
+                     "IN... OUT: images or textures (their level 0) to read, and a .ktx2 or .dds file to write, or\n"
+                     "images, one per level, with %d for its number: wall_%d.png. With --batch: DIR OUTDIR")
+        ->required();
+    o->of_levels = add_recipe(verb, o);
+    CLI::Option* cube = verb->add_flag("--cube", o->job.is_cube,
+                                       "Six inputs are the faces +x -x +y -y +z -z of a cube map, filtered across "
+                                       "their edges");
+    CLI::Option* array = verb->add_flag("--array", o->job.is_array, "The inputs, of equal size, are layers");
+    CLI::Option* keep = verb->add_flag("--keep-levels", o->job.keep_levels,
+                                       "Copy the levels of a texture as they are, into another kind of file");
+    o->of_levels.insert(o->of_levels.end(), {cube, array});
+    o->of_one = {cube, array, keep, verb->get_option("--normal")};
+    add_batch(verb, o);
+    add_threads(verb, o->parallel)->description("Most threads to keep busy; 0 (default): one per core");
+    add_json(verb, o->json);
+    add_quiet(verb);
+    program.on(
+        verb, [o] { check(*o); }, [o] { o->is_batch ? run_many(*o) : run_one(*o); });
+}
+
+}  // namespace bandlimit::app

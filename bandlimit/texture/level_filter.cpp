@@ -1,0 +1,47 @@
+#include "bandlimit/texture/level_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace bandlimit {
+namespace {
+
+std::variant<Resizer, TermFilter> make_filter(const MipFilter& filter, const Grid& src, const Grid& dst, int channels,
+                                              const LevelFilter::Options& o) {
+    if (const auto* fetches = std::get_if<Fetches>(&filter))
+        return TermFilter(*fetches, src, dst, o.edge_x, o.edge_y, o.premultiply);
+    const auto* taps = std::get_if<Taps>(&filter);
+    if (taps && (src.x.count == dst.x.count || src.y.count == dst.y.count))
+        return TermFilter(*taps, src, dst, o.edge_x, o.edge_y, o.premultiply);
+    ResizeOptions options{.edge = o.edge_x, .edge_y = o.edge_y, .premultiply = o.premultiply};
+    if (taps) options.reconstruction = *taps;
+    if (const auto* kernel = std::get_if<Kernel>(&filter)) options.reconstruction = *kernel;
+    return Resizer(src, dst, channels, options);
+}
+
+}  // namespace
+
+LevelFilter::LevelFilter(const MipFilter& filter, const Grid& src, const Grid& dst, int channels,
+                         const Options& options)
+    : filter_(make_filter(filter, src, dst, channels, options)) {}
+
+bool LevelFilter::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
+    return std::visit([&](const auto& f) { return f.run(source, target, parallel); }, filter_);
+}
+
+int reach_of(const MipFilter& filter, double step) {
+    double reach = 0;
+    if (const auto* fetches = std::get_if<Fetches>(&filter)) {
+        for (const Fetch& f : *fetches) reach = std::max({reach, std::abs(f.x), std::abs(f.y)});
+        reach = reach * step / 2 + 1;
+    } else if (const auto* taps = std::get_if<Taps>(&filter)) {
+        reach = std::abs(taps->first) + static_cast<double>(taps->weights.size());
+    } else {
+        const auto* kernel = std::get_if<Kernel>(&filter);
+        reach = (kernel ? kernel->radius : shrink3().radius) * std::max(1.0, step) + 1;
+    }
+    return static_cast<int>(std::min(std::ceil(reach), 0x1p29));
+}
+
+}  // namespace bandlimit
