@@ -30,6 +30,8 @@ def kernels(scales):
 
 def shift(scale):
     axis = max(scale["x"], scale["y"], key=lambda a: abs(a["shift"]))
+    if not axis["kernel"]["known"]:
+        return "–"
     if axis["alignment"] == "centers":
         return "**centers**"
     if abs(axis["shift"]) < 0.02:
