@@ -241,7 +241,11 @@ std::string kernel_text(const KernelFinding& kernel, const Ratio& ratio) {
     const bool is_nearest = c.kernel.form == Kernel::Form::nearest;
     if (!kernel.is_widened(ratio) && !is_nearest) text += ", not widened";
     else if (std::abs(c.widening - 1) > 0.02) text += fmt::format(", {:.2f} times as wide", c.widening);
-    return kernel.is_known ? text : fmt::format("unknown (nearest: {}, {:.0f} % off)", text, kernel.residual * 100);
+    if (!kernel.is_known)
+        return kernel.residual > 0.2 ? "unknown"
+                                     : fmt::format("unknown (nearest: {}, {:.0f} % off)", text, kernel.residual * 100);
+    // Known kernels of float or of rounded codes leave less.
+    return kernel.residual > std::max(0.015, 2 * kernel.noise) ? "about " + text : text;
 }
 
 std::vector<Finding> findings_of(const AuditReport& report, const AuditSubject& subject) {

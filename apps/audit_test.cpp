@@ -116,11 +116,11 @@ TEST(Audit, AnInterruptionEndsTheCommandAndRemovesItsFiles) {
     const Outcome run = audit("sleep 100 # {in} {out} {scale}", "", {.meanwhile = [&](pid_t program) {
                                   for (const auto& folder : std::filesystem::directory_iterator(audit / "tmp"))
                                       started = started || std::filesystem::exists(folder.path() / ".stderr");
-                                  if (started) ::kill(program, SIGINT);
+                                  if (started) ::kill(program, SIGTERM);
                                   return started;
                               }});
     EXPECT_TRUE(started);
-    EXPECT_EQ(run.signal, SIGINT);
+    EXPECT_EQ(run.signal, SIGTERM);
     EXPECT_TRUE(audit.left_nothing());
     EXPECT_LT(run.seconds, 60);
 }

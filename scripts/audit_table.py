@@ -13,7 +13,11 @@ def kernel(scale):
         text += ", **not widened**"
     elif abs(k["widening"] - 1) > 0.02:
         text += f", {k['widening']:.2f} wide"
-    return text if k["known"] else f"own (near {k['name']}, {100 * k['residual']:.0f} %)"
+    if k["residual"] > 0.2:
+        return "unknown"
+    if not k["known"]:
+        return f"unknown (near {k['name']}, {100 * k['residual']:.0f} %)"
+    return f"about {text}" if k["residual"] > max(0.015, 2 * k["noise"]) else text
 
 
 def kernels(scales):
@@ -26,6 +30,8 @@ def kernels(scales):
 
 def shift(scale):
     axis = max(scale["x"], scale["y"], key=lambda a: abs(a["shift"]))
+    if not axis["kernel"]["known"]:
+        return "–"
     if axis["alignment"] == "centers":
         return "**centers**"
     if abs(axis["shift"]) < 0.02:

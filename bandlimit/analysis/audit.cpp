@@ -209,15 +209,15 @@ AxisReport report_axis(const Measured& m, std::size_t axis, const std::vector<do
     r.kernel.residual = fit.residual;
     r.kernel.name = r.kernel.candidate.kernel.name;
     r.kernel.is_known = fit.residual <= std::max(known_residual, 3 * r.kernel.noise);
-    r.placement = fit.placement;
-    r.alignment = alignment_name(fit.placement, bank.ratio);
-    r.shift = fit.placement.shift;
-    r.support_source = support(bank, fit.placement);
+    r.placement = r.kernel.is_known ? fit.placement : Placement{false, mean_shift(bank)};
+    r.alignment = alignment_name(r.placement, bank.ratio);
+    r.shift = r.placement.shift;
+    r.support_source = support(bank, r.placement);
     r.support_coarser = r.support_source / bank.ratio.stretch();
     if (r.kernel.is_known && !bank.ratio.is_whole())
         r.phases = find_phases(bank, r.kernel.candidate, choice.fit.placement);
     r.bias = code > 0 ? bank.bias / code : bank.bias;
-    r.samples = kernel_samples(bank, fit.placement);
+    r.samples = kernel_samples(bank, r.placement);
     return r;
 }
 

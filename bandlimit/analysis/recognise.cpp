@@ -144,24 +144,6 @@ Span compared_rows(const MeasuredBank& bank, int most = most_rows) {
     return {bank.interior_begin(), std::min(bank.interior_end(), bank.interior_begin() + most)};
 }
 
-/// The place of a row's centre of mass less that of its output, in target samples to the right.
-double mean_shift(const MeasuredBank& bank) {
-    double total = 0, rows = 0;
-    for (int i = bank.interior_begin(); i < bank.interior_end(); ++i) {
-        const double place = bank.corner_position(i);
-        const int middle = static_cast<int>(std::lround(place));
-        double moment = 0, sum = 0;
-        for (int j = middle - bank.period / 2; j <= middle + bank.period / 2; ++j) {
-            const double w = bank.weight(i, j);
-            if (std::abs(w) < 4 * bank.noise) continue;
-            moment += w * (j - place), sum += w;
-        }
-        if (std::abs(sum) < 0.1) continue;
-        total += moment / sum, ++rows;
-    }
-    return rows > 0 ? -total / rows / bank.ratio.step() : 0;
-}
-
 /// The least value of f on [low, high], by golden section.
 template <class F>
 double minimise(F f, double low, double high, int steps = 24) {
@@ -187,6 +169,23 @@ Axis target_axis(const Placement& placement, int inputs, int outputs) {
     const Axis target = placement.centers ? center_aligned(source, outputs) : Axis{outputs, source.begin, source.end};
     const double left = placement.shift * target.pitch();  // what moves right is read further left
     return {outputs, target.begin - left, target.end - left};
+}
+
+double mean_shift(const MeasuredBank& bank) {
+    double total = 0, rows = 0;
+    for (int i = bank.interior_begin(); i < bank.interior_end(); ++i) {
+        const double place = bank.corner_position(i);
+        const int middle = static_cast<int>(std::lround(place));
+        double moment = 0, sum = 0;
+        for (int j = middle - bank.period / 2; j <= middle + bank.period / 2; ++j) {
+            const double w = bank.weight(i, j);
+            if (std::abs(w) < 4 * bank.noise) continue;
+            moment += w * (j - place), sum += w;
+        }
+        if (std::abs(sum) < 0.1) continue;
+        total += moment / sum, ++rows;
+    }
+    return rows > 0 ? -total / rows / bank.ratio.step() : 0;
 }
 
 double top_left_shift(const Ratio& ratio) {

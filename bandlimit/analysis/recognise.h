@@ -24,6 +24,9 @@ Axis target_axis(const Placement& placement, int inputs, int outputs);
 /// The shift against shared corners if the first sample of both grids is at the same place: -1/2 for twice the size.
 double top_left_shift(const Ratio& ratio);
 
+/// The mean distance of the rows' centres of mass from shared corners, in target samples: a shift without a kernel.
+double mean_shift(const MeasuredBank& bank);
+
 /// "corners", "centers", "top-left" (within a hundredth of a sample) or "shifted".
 std::string_view alignment_name(const Placement& placement, const Ratio& ratio);
 
