@@ -98,6 +98,7 @@ function(bandlimit_program)
         # Nothing runs it there: it is built to see that Clang takes it.
         target_compile_options(bandlimit PRIVATE -O0 -fno-sanitize=all)
     endif()
+    target_compile_options(bandlimit PRIVATE ${BANDLIMIT_PROGRAM_OPTIONS})
     install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()
 
