@@ -12,9 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double visible_shift = 0.02;  // pixels: above it a shift is one
-constexpr double visible_bias = 0.2;    // codes
-constexpr double poor_alias = -12;      // dB: what even a box does better than
+constexpr double visible_bias = 0.2;  // codes
+constexpr double poor_alias = -12;    // dB: what even a box does better than
 
 /// Values of both sides of 1, each text once with the scales it holds for, if they differ.
 template <class F>

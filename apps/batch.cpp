@@ -171,7 +171,7 @@ std::vector<Item> examined_items(const BatchJob& batch, const Manifest& manifest
 class Crew {
 public:
     Crew(const BatchJob& batch, std::vector<Item>& items, Manifest& manifest)
-        : batch_(batch), manifest_(manifest), threads_(batch.parallel.count()) {
+        : manifest_(manifest), threads_(batch.parallel.count()) {
         memory_ = batch.memory > 0 ? batch.memory : available_memory() / 4;
         for (Item& item : items)
             if (item.is_due()) {
@@ -277,7 +277,6 @@ private:
         }
     }
 
-    const BatchJob& batch_;
     Manifest& manifest_;
     int threads_;
     std::uint64_t memory_ = 0, pixels_ = 0;

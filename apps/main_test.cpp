@@ -2,6 +2,7 @@
 #include <array>
 
 #include "apps/run_program_test.h"
+#include "bandlimit/core/sanitized_test.h"
 
 namespace bandlimit {
 namespace {
@@ -130,6 +131,7 @@ TEST(CommandLine, TheExamplesOfEveryHelpWorkAsPasted) {
 }
 
 TEST(CommandLine, TheTourIsAPageWithItsPictures) {
+    if (is_sanitized) GTEST_SKIP() << "takes minutes there, and its parts are tested by themselves";
     const Shell shell(BANDLIMIT_PROGRAM);
     const Outcome help = shell("tour --help");
     ASSERT_EQ(examples_of(help), std::vector<std::string>{"tour out"});
