@@ -17,6 +17,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "bandlimit/core/error.h"
 
