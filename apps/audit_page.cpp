@@ -9,30 +9,11 @@
 #include "apps/pictures.h"
 #include "apps/plot.h"
 #include "bandlimit/analysis/audit_scene.h"
-#include "bandlimit/color/encoding.h"
 #include "bandlimit/io/atomic_file.h"
 #include "bandlimit/resample/resize.h"
 
 namespace bandlimit::app {
 namespace {
-
-/// Stored values as a PNG of the same codes.
-void write_codes(const std::string& path, View<const float> stored) {
-    ImageTarget target;
-    target.width = stored.width, target.height = stored.height;
-    target.channel_names = channel_names(1);
-    target.transfer = Transfer::srgb;
-    ImageWriter writer(path, target);
-    AnyImage row = make_image(Depth::u8, stored.width, 1, 1);
-    std::vector<float> values;
-    for (int y = 0; y < stored.height; ++y) {
-        values.clear();
-        for (int x = 0; x < stored.width; ++x) values.push_back(stored(x, y));
-        encode_row(values, false, view_of(row), 0, {});
-        writer.write_rows(const_view(view_of(row)));
-    }
-    writer.finish();
-}
 
 /// The kernel that was recognised, scaled like measured weights: by the sum of its values a pitch of the source apart.
 Series nominal(const KernelFinding& kernel, const Ratio& ratio) {
@@ -91,9 +72,9 @@ void add_scale(Page& page, const AuditReport& report, const ScaleReport& s, cons
                     a.kernel.residual * 100, a.kernel.noise * 100, a.kernel.runner_up,
                     a.kernel.runner_up_residual * 100),
         "", 1000);
-    write_codes(folder + "/plate-" + name + ".png", s.plate.view());
+    write_data(folder + "/plate-" + name + ".png", s.plate.view());
     const Light light = report.filtered_in == Light::unknown ? Light::codes : report.filtered_in;
-    write_codes(folder + "/own-" + name + ".png", own_plate(s, light, report.code).view());
+    write_data(folder + "/own-" + name + ".png", own_plate(s, light, report.code).view());
     page.gallery(
         {{"plate-" + name + ".png", "this program"}, {"own-" + name + ".png", "bandlimit"}},
         fmt::format("The zone plate. Where it must survive its error is {:.1f} dB, and {:.1f} dB are left where it "

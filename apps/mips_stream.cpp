@@ -31,7 +31,7 @@ public:
     void write(int level, int first, const AnyView& rows) {
         const std::uint64_t row_bytes =
             shape_.image_bytes(level) / static_cast<std::uint64_t>(mip_length(shape_.height, level));
-        const int count = std::visit([](const auto& v) { return v.height; }, rows);
+        const int count = shape_of(rows).height;
         const std::uint64_t start = plan_.levels[static_cast<std::size_t>(level)].start;
         file_.seek(static_cast<std::int64_t>(start + static_cast<std::uint64_t>(first) * row_bytes));
         file_.write(bytes_of(blocks_[static_cast<std::size_t>(level)]).data(),

@@ -56,6 +56,13 @@ void write_data(const std::string& path, View<const float> values) {
     write(path, target, values);
 }
 
+double mean_of(View<const float> image, int channel) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image(x, y, channel));
+    return sum / image.width / image.height;
+}
+
 Image<float> read_picture(const std::string& path, Space space, Parallel parallel) {
     ImageReader reader(path, parallel.threads);
     const ImageInfo& info = reader.info();

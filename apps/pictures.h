@@ -18,8 +18,11 @@ constexpr int alpha_among(int channels) { return channels == 2 || channels == 4 
 /// Writes linear light to a file of the given depth, encoded as the format and depth ask; 1, 3 or 4 channels.
 void write_picture(const std::string& path, View<const float> linear, Depth depth = Depth::u8);
 
-/// Writes values that are no colours to a file of 8 bits: what is 1 becomes the largest code.
+/// Writes values as they are, codes or what is no colour, to a file of 8 bits: 1 becomes the largest code.
 void write_data(const std::string& path, View<const float> values);
+
+/// The mean of a channel.
+double mean_of(View<const float> image, int channel = 0);
 
 /// Reads a whole file as linear light, alpha not multiplied.
 Image<float> read_picture(const std::string& path, Space space = Space::automatic, Parallel parallel = {});

@@ -192,13 +192,6 @@ void star_part(Tour& tour) {
         256);
 }
 
-double mean_of(View<const float> image) {
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image(x, y));
-    return sum / image.width / image.height;
-}
-
 void photograph_part(Tour& tour) {
     tour.page.section("A photograph, halved in linear light and in codes",
                       "The codes of a picture file are not amounts of light. Averaging them makes fine contrast darker "

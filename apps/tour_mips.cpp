@@ -37,13 +37,6 @@ Image<float> read_level(const Tour& tour, const std::string& stem, int level, Sp
     return read_picture(tour.path(level_file(stem, level)), space, tour.parallel);
 }
 
-double mean_of(View<const float> image, int channel) {
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image(x, y, channel));
-    return sum / image.width / image.height;
-}
-
 void light_part(Tour& tour) {
     tour.page.section("Mip maps, averaged as light and as codes",
                       "A texture of sRGB codes must be decoded before it is averaged. Averages of codes lose light at "
