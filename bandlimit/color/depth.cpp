@@ -46,6 +46,12 @@ AnyConstView rows_of(const AnyConstView& view, int first, int count) {
     return std::visit([&](auto v) -> AnyConstView { return cropped(v, 0, first, v.width, count); }, view);
 }
 
+ViewShape shape_of(const AnyView& view) { return shape_of(const_view(view)); }
+
+ViewShape shape_of(const AnyConstView& view) {
+    return std::visit([](const auto& v) { return ViewShape{v.width, v.height, v.channels}; }, view);
+}
+
 AnyConstView const_view(const AnyView& view) {
     return std::visit([](auto v) -> AnyConstView { return View<const std::remove_pointer_t<decltype(v.data)>>(v); },
                       view);

@@ -41,6 +41,13 @@ AnyView rows_of(const AnyView& view, int first, int count);
 AnyConstView rows_of(const AnyConstView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);
 
+/// How many samples a view has each way.
+struct ViewShape {
+    int width = 0, height = 0, channels = 0;
+};
+ViewShape shape_of(const AnyView& view);
+ViewShape shape_of(const AnyConstView& view);
+
 /// Code to value: exact for 0 and the largest code, else correctly rounded.
 inline float from_code(std::uint8_t code) { return static_cast<float>(code) / 255.0f; }
 inline float from_code(std::uint16_t code) { return static_cast<float>(code) / 65535.0f; }

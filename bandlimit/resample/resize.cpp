@@ -52,14 +52,6 @@ IndexRange stored(IndexRange read, int count, Edge edge) {
     return range;
 }
 
-struct Shape {
-    int width, height, channels;
-};
-template <class Any>
-Shape shape_of(const Any& view) {
-    return std::visit([](const auto& v) { return Shape{v.width, v.height, v.channels}; }, view);
-}
-
 }  // namespace
 
 Kernel auto_kernel(const Axis& src, const Axis& dst) {
@@ -123,7 +115,7 @@ IndexRange Resizer::rows_needed(int first, int last) const {
 }
 
 bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
-    const Shape from = shape_of(source.samples), to = shape_of(target.samples);
+    const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
     const int out_channels = plan_->channels - (target.background.empty() ? 0 : 1);
     if (from.width != plan_->src.x.count || to.width != plan_->dst.x.count || from.channels != plan_->channels ||
         to.channels != out_channels)

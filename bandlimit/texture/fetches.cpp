@@ -192,7 +192,7 @@ void TermFilter::find_borders() {
 
 Image<float> TermFilter::source_rows(const SourceRows& source, int begin, int end) const {
     const Bank& y_bank = terms_[0].y;
-    const int channels = std::visit([](const auto& v) { return v.channels; }, source.samples);
+    const int channels = shape_of(source.samples).channels;
     Image<float> rows(terms_[0].x.inputs, end - begin, channels, Layout::interleaved);
     const auto length = static_cast<std::size_t>(rows.width()) * static_cast<std::size_t>(channels);
     for (int v = begin; v < end; ++v) {

@@ -16,10 +16,8 @@ struct Size {
     int width, height;
 };
 Size size_of_view(const AnyConstView& view) {
-    return std::visit([](const auto& v) { return Size{v.width, v.height}; }, view);
-}
-int channels_of(const AnyConstView& view) {
-    return std::visit([](const auto& v) { return v.channels; }, view);
+    const ViewShape shape = shape_of(view);
+    return {shape.width, shape.height};
 }
 /// A view without samples.
 AnyConstView shape_only(Depth depth, int width, int height, int channels) {
@@ -125,11 +123,9 @@ private:
     std::vector<MipChain> chains_;
 };
 
-}  // namespace
+constexpr int base_block = 256;  // rows at a time where there is nothing but level 0
 
-namespace {
-constexpr int base_block = 256;  ///< rows at a time where there is nothing but level 0
-}
+}  // namespace
 
 struct MipStream::State {
     RoleLevels role;
@@ -207,7 +203,8 @@ namespace {
 MipChain make_by_rows(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
                       const MipOptions& options, Parallel parallel) {
     const Size size = size_of_view(base);
-    MipStream stream(size.width, size.height, channels_of(base), depth_of(base), stored, target, options, parallel);
+    MipStream stream(size.width, size.height, shape_of(base).channels, depth_of(base), stored, target, options,
+                     parallel);
     MipChain chain;
     for (int level = 0; level < stream.levels(); ++level) {
         const Size s = at_level(size, level);
@@ -225,7 +222,7 @@ MipChain make_by_rows(const AnyConstView& base, const Encoding& stored, const Te
 
 MipChain make_mips(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
                    const MipOptions& options, Parallel parallel) {
-    if (MipStream::is_possible(options, channels_of(base)))
+    if (MipStream::is_possible(options, shape_of(base).channels))
         return make_by_rows(base, stored, target, options, parallel);
     const Size size = size_of_view(base);
     const int count = check_levels(size, options);
@@ -255,9 +252,9 @@ std::vector<MipChain> make_cube_mips(std::span<const AnyConstView> faces, const 
     if (options.normals) fail("make_cube_mips: one map of normals for six faces; pass none, or each face to make_mips");
     const Size size = size_of_view(faces[0]);
     for (const AnyConstView& face : faces) {
-        const Size other = size_of_view(face);
+        const ViewShape other = shape_of(face);
         if (other.width != size.width || other.height != size.width || depth_of(face) != depth_of(faces[0]) ||
-            channels_of(face) != channels_of(faces[0]))
+            other.channels != shape_of(faces[0]).channels)
             fail("make_cube_mips: faces of ", size.width, " x ", size.height, " and ", other.width, " x ", other.height,
                  "; pass six squares of the same size, depth and channels");
     }

@@ -56,15 +56,11 @@ Vector stored_unit(Vector mean, Depth depth, float rounding) {
 
 Image<float> decode_normals(const AnyConstView& map, bool make_unit, Parallel parallel) {
     const bool are_codes = is_integer(depth_of(map));
-    const auto [width, height, channels] = std::visit(
-        [](const auto& v) {
-            return std::array{v.width, v.height, v.channels};
-        },
-        map);
-    const int step = channels, w = width;
-    Image<float> vectors(width, height, 3, Layout::interleaved);
-    parallel_for(height, grain, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        std::vector<float> row(static_cast<std::size_t>(w) * static_cast<std::size_t>(step));
+    const ViewShape shape = shape_of(map);
+    const int step = shape.channels;
+    Image<float> vectors(shape.width, shape.height, 3, Layout::interleaved);
+    parallel_for(shape.height, grain, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        std::vector<float> row(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(step));
         for (int y = static_cast<int>(begin); y < end; ++y) {
             decode_row(map, y, {}, false, row);
             if (are_codes)
@@ -86,7 +82,7 @@ bool encode_normals(const NormalMeans& means, const AnyView& target, Parallel pa
     const Depth depth = depth_of(const_view(target));
     const bool to_codes = is_integer(depth);
     const float rounding = rounding_of_length(depth);
-    const int channels = std::visit([](const auto& v) { return v.channels; }, target);
+    const int channels = shape_of(target).channels;
     std::atomic<bool> lost = false;
     parallel_for(from.height, grain, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         std::vector<float> row(static_cast<std::size_t>(from.width) * static_cast<std::size_t>(channels));

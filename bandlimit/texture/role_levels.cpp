@@ -15,14 +15,6 @@ namespace {
 
 constexpr int grain = 16;  // rows per thread at least
 
-struct Shape {
-    int width, height, channels;
-};
-template <class Any>
-Shape shape_of(const Any& view) {
-    return std::visit([](const auto& v) { return Shape{v.width, v.height, v.channels}; }, view);
-}
-
 template <class T>
 constexpr T one() {
     if constexpr (std::is_integral_v<T>) return std::numeric_limits<T>::max();
@@ -43,7 +35,7 @@ bool any_row(int height, std::size_t samples, Parallel parallel, const Body& bod
     return result;
 }
 
-std::size_t row_length(const Shape& shape) {
+std::size_t row_length(const ViewShape& shape) {
     return static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.channels);
 }
 
@@ -72,7 +64,7 @@ void copy_samples(const AnyConstView& from, const AnyView& to, Parallel parallel
 
 /// Clamps floats to [0, 1]; a NaN stays one.
 void clamp_samples(const AnyView& view, Parallel parallel) {
-    const Shape shape = shape_of(view);
+    const ViewShape shape = shape_of(view);
     any_row(shape.height, row_length(shape), parallel, [&](int y, std::span<float> row) {
         decode_row(const_view(view), y, {}, false, row);
         for (float& v : row) v = v < 0 ? 0 : v > 1 ? 1 : v;
@@ -123,11 +115,10 @@ void RoleLevels::check(const Encoding& stored, const MipOptions& options) const 
     if (role_ == Role::normal && (c < 2 || c > 4 || to < 2))
         fail("make_mips: normals of ", c, " channels in ", to, "; pass 2 (x and y), 3 or 4, and a target of 2 or 4");
     if (role_ != Role::normal && (c < 1 || c > to))
-        fail("make_mips: ", c, " channels do not fit a target of ", to,
-             "; pass channels_of() the view, or another target");
+        fail("make_mips: ", c, " channels do not fit a target of ", to, "; pass fewer, or another target");
     if (!options.normals) return;
     if (role_ != Role::roughness) fail("make_mips: normals for ", role, "; only roughness takes them");
-    const Shape normals = shape_of(*options.normals);
+    const ViewShape normals = shape_of(*options.normals);
     if (normals.width < 1 || normals.height < 1 || normals.channels < 2 || normals.channels > 4)
         fail("make_mips: normals of ", normals.width, " x ", normals.height, " with ", normals.channels,
              " channels; pass at least 1 x 1 with 2 to 4");
@@ -148,7 +139,7 @@ SourceRows RoleLevels::source() const {
 
 Image<float> RoleLevels::floats_of(const AnyConstView& rows, Parallel parallel) const {
     if (role_ == Role::normal && base_channels_ == 2) return decode_normals(rows, false, parallel);
-    const Shape shape = shape_of(rows);
+    const ViewShape shape = shape_of(rows);
     Image<float> floats(shape.width, shape.height, shape.channels, Layout::interleaved);
     const int filtered = shape.channels, rough = has_own_alpha() ? filtered - 1 : filtered;
     any_row(shape.height, 0, parallel, [&](int y, std::span<float>) {
@@ -209,7 +200,7 @@ void RoleLevels::complete(const AnyView& image, Parallel parallel) const {
 bool RoleLevels::are_codes_of_normals() const { return is_integer(depth_of(base_)) && base_channels_ > 2; }
 
 bool RoleLevels::store_base_rows(const AnyConstView& rows, const AnyView& target, Parallel parallel) const {
-    const Shape shape = shape_of(rows);
+    const ViewShape shape = shape_of(rows);
     const Encoding to = target_encoding();
     const bool is_same = depth_of(rows) == target_.depth && base_channels_ == target_.channels &&
                          stored_.transfer == to.transfer && (to.alpha < 0 || stored_.associated == to.associated);
@@ -231,7 +222,7 @@ bool RoleLevels::store_base_rows(const AnyConstView& rows, const AnyView& target
 }
 
 AnyImage RoleLevels::level_zero(bool& lost, Parallel parallel) {
-    const Shape shape = shape_of(base_);
+    const ViewShape shape = shape_of(base_);
     AnyImage image = make_image(target_.depth, shape.width, shape.height, target_.channels);
     lost |= store_base_rows(base_, view_of(image), parallel);
     if (role_ == Role::alpha_tested) {
