@@ -23,6 +23,7 @@ constexpr int version = 1;
 constexpr int largest_factor = 4096;
 constexpr int largest_first = 1'000'000;
 constexpr std::size_t most_weights = 65'536;
+constexpr std::size_t most_terms = 64, most_components = 16;
 constexpr std::uintmax_t most_bytes = 16 << 20;
 constexpr int deepest = 16;  // braces and brackets around anything in such a file
 
@@ -62,37 +63,64 @@ json parse(std::string_view text, const std::string& name) {
     }
 }
 
-Taps parse_1d(const json& object, int factor, const std::string& name) {
-    if (!object.is_object()) fail_file(name, "\"taps\" is no object; write {\"first\": ..., \"weights\": [...]}");
-    const auto first = object.find("first"), weights = object.find("weights");
-    if (first == object.end() || weights == object.end())
-        fail_file(name, "\"taps\" lacks \"first\" or \"weights\"; add them");
-    if (!weights->is_array() || weights->empty() || weights->size() > most_weights)
-        fail_file(name, "\"weights\" is no list of 1 to ", most_weights, " numbers; correct it");
-    Taps taps;
-    taps.factor = factor;
-    taps.first = integer(*first, -largest_first, largest_first, name, "first");
-    for (const json& weight : *weights) taps.weights.push_back(number(weight, name, "weights"));
-    return taps;
+/// The member `key` of `object`, or null.
+const json* member(const json& object, const char* key) {
+    const auto found = object.find(key);
+    return found == object.end() || found->is_null() ? nullptr : &*found;
 }
 
-/// Throws Error for what could not be read again.
-void check(const TapsFile& file) {
-    const auto is_finite = [](double v) { return std::isfinite(v); };
-    if (file.factor < 1 || file.factor > largest_factor)
-        fail("write_taps: factor = ", file.factor, "; pass 1 to ", largest_factor);
-    if (!is_finite(file.error.value_or(0)) || !is_finite(file.cost.value_or(0)))
-        fail("write_taps: error or cost is not finite; leave it out");
-    if (!file.taps) return;
-    const Taps& taps = *file.taps;
-    if (taps.factor != file.factor)
-        fail("write_taps: taps of factor ", taps.factor, " in a file of factor ", file.factor, "; make them equal");
-    if (std::abs(static_cast<long long>(taps.first)) > largest_first)
-        fail("write_taps: first = ", taps.first, "; pass at most ", largest_first, " either way");
-    if (taps.weights.empty() || taps.weights.size() > most_weights)
-        fail("write_taps: ", taps.weights.size(), " weights; pass 1 to ", most_weights);
-    for (const double weight : taps.weights)
-        if (!is_finite(weight)) fail("write_taps: a weight is ", weight, "; pass finite ones");
+std::vector<double> numbers(const json* list, const std::string& name, const char* what) {
+    if (!list || !list->is_array() || list->empty() || list->size() > most_weights)
+        fail_file(name, "\"", what, "\" is no list of 1 to ", most_weights, " numbers; correct it");
+    std::vector<double> result;
+    for (const json& value : *list) result.push_back(number(value, name, what));
+    return result;
+}
+
+Taps parse_1d(const json& object, int factor, const std::string& name) {
+    if (!object.is_object()) fail_file(name, "\"taps\" is no object; write {\"first\": ..., \"weights\": [...]}");
+    const json *first = member(object, "first"), *weights = member(object, "weights");
+    if (!first || !weights) fail_file(name, "\"taps\" lacks \"first\" or \"weights\"; add them");
+    return {integer(*first, -largest_first, largest_first, name, "first"), numbers(weights, name, "weights"), factor};
+}
+
+/// What parse_one makes of each object in the list `key`, which may be missing.
+template <class Parse>
+auto list_of(const json& root, const char* key, std::size_t most, const std::string& name, Parse parse_one) {
+    std::vector<decltype(parse_one(root))> result;
+    const json* list = member(root, key);
+    if (!list) return result;
+    if (!list->is_array() || list->size() > most)
+        fail_file(name, "\"", key, "\" is no list of at most ", most, " entries; correct it");
+    for (const json& entry : *list) {
+        if (!entry.is_object()) fail_file(name, "\"", key, "\" holds something that is no object; correct it");
+        result.push_back(parse_one(entry));
+    }
+    return result;
+}
+
+/// The number `key` of `object`, which must be there.
+double part(const json& object, const char* key, const std::string& name) {
+    const json* value = member(object, key);
+    if (!value) fail_file(name, "\"", key, "\" is missing in a list; add it");
+    return number(*value, name, key);
+}
+
+void parse_2d(const json& root, const std::string& name, TapsFile& file) {
+    const auto part_of = [&](const json& object, const char* key) { return part(object, key, name); };
+    file.fetches = list_of(root, "fetches", most_weights, name, [&](const json& fetch) {
+        return Fetch{part_of(fetch, "x"), part_of(fetch, "y"), part_of(fetch, "weight")};
+    });
+    file.terms = list_of(root, "terms", most_terms, name, [&](const json& term) {
+        return Term{numbers(member(term, "column"), name, "column"), numbers(member(term, "row"), name, "row")};
+    });
+    for (const Term& term : file.terms)
+        if (term.column.size() != file.terms[0].column.size() || term.row.size() != file.terms[0].row.size())
+            fail_file(name, "\"terms\" have columns or rows of different lengths; make them equal");
+    file.components = list_of(root, "components", most_components, name, [&](const json& component) {
+        return Component{part_of(component, "a"), part_of(component, "b"), part_of(component, "A"),
+                         part_of(component, "B")};
+    });
 }
 
 }  // namespace
@@ -115,7 +143,13 @@ TapsFile parse_taps(std::string_view text, const std::string& name) {
         file.factor = integer(*factor, 1, largest_factor, name, "factor");
     file.error = optional_number(root, "error", name);
     file.cost = optional_number(root, "cost", name);
-    if (const auto taps = root.find("taps"); taps != root.end()) file.taps = parse_1d(*taps, file.factor, name);
+    file.multiply_adds = optional_number(root, "multiply_adds", name);
+    file.loss = optional_number(root, "loss", name);
+    file.radius = optional_number(root, "radius", name);
+    if (const json* taps = member(root, "taps")) file.taps = parse_1d(*taps, file.factor, name);
+    if (const json* values = member(root, "singular_values"))
+        file.singular_values = numbers(values, name, "singular_values");
+    parse_2d(root, name, file);
     return file;
 }
 
@@ -139,16 +173,44 @@ const Taps& taps_of(const TapsFile& file, const std::string& name) {
     return *file.taps;
 }
 
-void write_taps(const std::string& path, const TapsFile& file) {
-    check(file);
+std::string taps_text(const TapsFile& file) {
+    if (file.taps && file.taps->factor != file.factor)
+        fail("taps_text: taps of factor ", file.taps->factor, " in a file of factor ", file.factor,
+             "; make them equal");
     nlohmann::ordered_json root;
+    const auto add = [&](const char* key, const std::optional<double>& value) {
+        if (value) root[key] = *value;
+    };
     root["version"] = version;
     root["kind"] = file.kind;
     root["factor"] = file.factor;
-    if (file.error) root["error"] = *file.error;
-    if (file.cost) root["cost"] = *file.cost;
+    add("error", file.error);
+    add("cost", file.cost);
+    add("multiply_adds", file.multiply_adds);
     if (file.taps) root["taps"] = {{"first", file.taps->first}, {"weights", file.taps->weights}};
+    for (const Fetch& f : file.fetches) root["fetches"].push_back({{"x", f.x}, {"y", f.y}, {"weight", f.weight}});
+    for (const Term& t : file.terms) root["terms"].push_back({{"column", t.column}, {"row", t.row}});
+    for (const Component& c : file.components)
+        root["components"].push_back({{"a", c.a}, {"b", c.b}, {"A", c.A}, {"B", c.B}});
+    add("loss", file.loss);
+    if (!file.singular_values.empty()) root["singular_values"] = file.singular_values;
+    add("radius", file.radius);
     const std::string text = root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    // What could not be read again is not written: a value that is not finite became null.
+    try {
+        const TapsFile again = parse_taps(text, "taps_text");
+        if (again.error.has_value() != file.error.has_value() || again.cost.has_value() != file.cost.has_value() ||
+            again.multiply_adds.has_value() != file.multiply_adds.has_value() ||
+            again.loss.has_value() != file.loss.has_value() || again.radius.has_value() != file.radius.has_value())
+            fail("taps_text: a number is not finite; leave it out");
+    } catch (const std::runtime_error& e) {
+        fail(e.what());
+    }
+    return text;
+}
+
+void write_taps(const std::string& path, const TapsFile& file) {
+    const std::string text = taps_text(file);
     AtomicFile out(path);
     out.write(text.data(), text.size());
     out.commit();

@@ -34,6 +34,39 @@ TEST(TapsJson, ComesBackBitForBit) {
     EXPECT_EQ(folder.count(), 1);
 }
 
+TEST(TapsJson, ListsOfTwoDimensionsComeBackBitForBit) {
+    TapsFile file{.kind = "disk", .factor = 1, .multiply_adds = 12};
+    file.fetches = {{-0.75777, 1.0 / 3, 0.37487566}, {0, 2.907, -0.125}};
+    file.terms = {{{1, 0.1, 5e-324}, {-0.3, 2}}, {{0, 1e300, 1}, {1, 0}}};
+    file.components = {{0.862325, 1.624835, 0.767583, 1.862321}};
+    file.loss = 0.02141;
+    file.radius = 1.1;
+    file.singular_values = {36.744, 9.127};
+    const TapsFile again = parse_taps(taps_text(file), "x");
+    EXPECT_EQ(taps_text(again), taps_text(file));
+    ASSERT_EQ(again.fetches.size(), 2u);
+    EXPECT_EQ(again.fetches[0].y, 1.0 / 3);
+    ASSERT_EQ(again.terms.size(), 2u);
+    EXPECT_EQ(again.terms[0].column, file.terms[0].column);
+    EXPECT_EQ(again.terms[1].row, file.terms[1].row);
+    ASSERT_EQ(again.components.size(), 1u);
+    EXPECT_EQ(again.components[0].B, 1.862321);
+    EXPECT_EQ(again.singular_values, file.singular_values);
+    EXPECT_EQ(again.radius, 1.1);
+    EXPECT_EQ(again.multiply_adds, 12);
+}
+
+TEST(TapsJson, HostileListsAreOneClearError) {
+    for (const std::string text :
+         {R"("fetches":1)", R"("fetches":[1])", R"("fetches":[{"x":0,"y":0}])", R"("terms":[{"column":[1]}])",
+          R"("terms":[{"column":[],"row":[1]}])", R"("terms":[{"column":[1],"row":[1]},{"column":[1],"row":[1,2]}])",
+          R"("components":[{"a":1,"b":1,"A":1}])", R"("components":[{"a":1,"b":1,"A":1,"B":"x"}])",
+          R"("components":{})", R"("singular_values":[])", R"("radius":"1")", R"("loss":1e999)"})
+        EXPECT_TRUE(fails_for(
+            "x", [&] { parse_taps("{\"version\":1," + text + "}", "x"); }, "; "))
+            << text;
+}
+
 TEST(TapsJson, WhatIsOptionalMayBeMissingAndOtherKeysAreIgnored) {
     const TapsFile file = parse_taps(R"({"version":1,"terms":[{"column":[1],"row":[2]}],"author":{"name":"me"}})", "x");
     EXPECT_EQ(file.factor, 1);

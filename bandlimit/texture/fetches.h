@@ -8,11 +8,6 @@
 
 namespace bandlimit {
 
-/// A linear read at `offset` source samples from the output, at a ratio of 2.
-struct LinearRead {
-    double offset = 0, weight = 0;
-};
-
 /// One of the products that a list of fetches is the sum of.
 struct FetchTerm {
     std::vector<LinearRead> x, y;

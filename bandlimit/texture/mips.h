@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bandlimit/core/parallel.h"
+#include "bandlimit/kernel/fetches.h"
 #include "bandlimit/resample/resize.h"
 #include "bandlimit/texture/texture.h"
 
@@ -59,14 +60,8 @@ struct RoleGuess {
 };
 RoleGuess guess_role(std::string_view path);
 
-/// A bilinear read of the source, at an offset in source texels from the position of the output.
-struct Fetch {
-    double x = 0, y = 0, weight = 0;
-};
-/// A filter that halves, as shaders run it: a sum of bilinear reads. Between texels of uneven sizes the offsets are
-/// stretched by the ratio of the pitches to 2.
-using Fetches = std::vector<Fetch>;
-/// Wronski's eight reads (2022, "Fast, GPU friendly, antialiasing downsampling filter").
+/// Wronski's eight reads that halve (2022, "Fast, GPU friendly, antialiasing downsampling filter"). Between texels of
+/// uneven sizes the offsets of fetches are stretched by the ratio of the pitches to 2.
 Fetches downsample8();
 
 /// What makes the weights of a level.

@@ -15,7 +15,10 @@ foreach(component IN LISTS COMPONENTS)
 endforeach()
 
 # What a component does not need must not even be looked for.
-set(hidden Ceres Eigen3 CLI11 nlohmann_json)
+set(hidden CLI11 nlohmann_json)
+if(NOT "design" IN_LIST COMPONENTS)
+    list(APPEND hidden Ceres Eigen3)
+endif()
 if(NOT "io" IN_LIST COMPONENTS)
     list(APPEND hidden OpenImageIO fmt)
 endif()
