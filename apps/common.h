@@ -43,6 +43,7 @@ void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_compare(Program& program);
 void add_analyze(Program& program);
+void add_design(Program& program);
 void add_audit(Program& program);
 void add_tour(Program& program);
 

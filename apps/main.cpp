@@ -97,6 +97,7 @@ int main(int argc, char** argv) {
     app::add_pattern(program);
     app::add_compare(program);
     app::add_analyze(program);
+    app::add_design(program);
     app::add_audit(program);
     app::add_info(program);
     app::add_tour(program);
