@@ -25,6 +25,7 @@ struct UsageError : std::runtime_error {
 struct Program {
     CLI::App cli{"bandlimit: sampling done right, for graphics", "bandlimit"};
     std::function<void()> selected;  ///< set by parsing
+    std::string command;             ///< the command line as one would paste it
 
     /// Adds a verb; `example` is a command line that works as pasted, or several, each on a line that begins with two
     /// blanks but the first.
