@@ -31,4 +31,6 @@ struct DesignVerb {
 CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
                           const std::string& example, std::function<void()> check, std::function<Design()> make);
 
+void add_design_separable(const DesignVerb& verb);
+
 }  // namespace bandlimit::app
