@@ -111,6 +111,7 @@ void add_design(Program& program) {
                                      "bandlimit design downsample --fetches 8 --plot downsample.svg");
     const DesignVerb verb{program, cli};
     add_design_disk(verb);
+    add_design_separable(verb);
     require_one_subcommand(*cli, "design");
 }
 

@@ -33,5 +33,6 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
 
 /// The subcommands, each in a file of its own.
 void add_design_disk(const DesignVerb& verb);
+void add_design_separable(const DesignVerb& verb);
 
 }  // namespace bandlimit::app
