@@ -19,7 +19,7 @@ namespace {
 
 constexpr int block = 16;                // output rows computed together: their windows overlap
 constexpr double strip_bytes = 1 << 20;  // of lines between source and output: half of a second cache of these days
-constexpr int least_columns = 64;        // of a strip: less would be more edge than strip
+constexpr int least_columns = 32;        // of a strip: less would be more edge than strip
 constexpr int chunk = 64;                // floats: four vectors of 512 bits, all that one step of combine() takes
 
 /// The sums of weights per output that drop nothing but what lies outside, by which BorderScale rescales.
