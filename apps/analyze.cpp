@@ -287,17 +287,6 @@ void print_list(bool json) {
 // ---- Drawing
 // ---------------------------------------------------------------------------------------------------------
 
-template <class F>
-Series curve(const std::string& label, double from, double to, int steps, F f) {
-    Series series{label, {}, {}, Series::Style::line};
-    for (int i = 0; i <= steps; ++i) {
-        const double x = from + (to - from) * i / steps;
-        series.x.push_back(x);
-        series.y.push_back(f(x));
-    }
-    return series;
-}
-
 Panel shape_panel(const Subject& subject) {
     Panel panel{"", "distance from the output (source samples)", "weight", {}};
     if (const auto* kernel = std::get_if<Kernel>(&subject)) {
@@ -308,9 +297,7 @@ Panel shape_panel(const Subject& subject) {
     }
     const PlacedWeights placed(*std::get<TapsFile>(subject).taps);
     panel.title = "taps";
-    Series stems{"", {}, placed.weights, Series::Style::stems};
-    for (std::size_t j = 0; j < placed.weights.size(); ++j) stems.x.push_back(placed.first + static_cast<double>(j));
-    panel.series = {stems};
+    panel.series = {stems("", placed.first, placed.weights)};
     return panel;
 }
 

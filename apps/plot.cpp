@@ -220,6 +220,22 @@ void run_gnuplot(const std::string& commands, const std::string& path, AtomicFil
 
 }  // namespace
 
+Series curve(const std::string& label, double from, double to, int steps, const std::function<double(double)>& f) {
+    Series series{label, {}, {}, Series::Style::line};
+    for (int i = 0; i <= steps; ++i) {
+        const double x = from + (to - from) * i / steps;
+        series.x.push_back(x);
+        series.y.push_back(f(x));
+    }
+    return series;
+}
+
+Series stems(const std::string& label, double first, const std::vector<double>& weights) {
+    Series series{label, {}, weights, Series::Style::stems};
+    for (std::size_t j = 0; j < weights.size(); ++j) series.x.push_back(first + static_cast<double>(j));
+    return series;
+}
+
 void check_plot_format(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);

@@ -1,5 +1,6 @@
 // Figures of curves, drawn by gnuplot.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ struct Series {
     std::vector<double> x, y;
     Style style = Style::line;
 };
+
+/// `steps` + 1 points of f, evenly from `from` to `to`.
+Series curve(const std::string& label, double from, double to, int steps, const std::function<double(double)>& f);
+
+/// Weights at distances of 1, the first of them at `first`.
+Series stems(const std::string& label, double first, const std::vector<double>& weights);
 
 struct Range {
     double from = 0, to = 1;
