@@ -178,6 +178,16 @@ IndexRange TermFilter::columns_read(int first, int last) const {
     return all;
 }
 
+std::uint64_t TermFilter::bytes(int channels, Parallel parallel) const {
+    const std::vector<Strip> all = strips(channels, parallel);
+    const Strip& widest = all.front();
+    const IndexRange rows = rows_read(height_ / 2, std::min(height_, height_ / 2 + block));
+    const double lines = double(computed()) * (widest.last - widest.first) +
+                         (shifts_ > 0 ? widest.read.end - widest.read.begin : 0);
+    return static_cast<std::uint64_t>(parallel.count() * 1.25 * (rows.end - rows.begin) * lines * channels *
+                                      double(sizeof(float)));
+}
+
 IndexRange TermFilter::rows_needed(int first, int last) const {
     if (first < 0 || first >= last || last > height_)
         fail("TermFilter::rows_needed: rows ", first, " to ", last, " of ", height_, "; pass a part of them");

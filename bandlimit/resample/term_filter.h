@@ -39,6 +39,9 @@ public:
     TermFilter(const Terms& terms, int first_x, int first_y, int width, int height, Edge edge_x, Edge edge_y,
                bool premultiply);
 
+    /// About how much memory run() takes, in bytes.
+    std::uint64_t bytes(int channels, Parallel parallel) const;
+
     /// The stored source rows [begin, end) that output rows [first, last) are made of.
     IndexRange rows_needed(int first, int last) const;
 
