@@ -37,16 +37,17 @@ void write_weights(const std::string& path, const WeightGrid& grid, int zoom) {
 }
 
 void reads_part(Tour& tour) {
-    tour.page.section("Halving in few reads",
-                      "A bilinear read weights four texels at once. Fetches are placed and weighted together, for the "
-                      "least squared distance from the ideal low-pass. The published filter has eight of them; more "
-                      "come nearer.",
-                      {"B. Wronski", "Fast, GPU friendly, antialiasing downsampling filter", "bartwronski.com", "2022"});
+    tour.page.section(
+        "Halving in few reads",
+        "A bilinear read weights four texels at once. Fetches are placed and weighted together, for the "
+        "least squared distance from the ideal low-pass. The published filter has eight of them; more "
+        "come nearer.",
+        {"B. Wronski", "Fast, GPU friendly, antialiasing downsampling filter", "bartwronski.com", "2022"});
     const std::string command = "bandlimit design downsample --fetches 8 --plot downsample.svg";
     std::vector<std::vector<std::string>> rows{{"filter", "reads", "error"}};
     const auto add = [&](const std::string& name, const Fetches& fetches) {
-        rows.push_back({name, fmt::format("{}", fetches.size()),
-                        fmt::format("{:.5f}", band_error(whole_filter(fetches)))});
+        rows.push_back(
+            {name, fmt::format("{}", fetches.size()), fmt::format("{:.5f}", band_error(whole_filter(fetches)))});
     };
     add("box", {{0, 0, 1}});
     add("as published", downsample8());
@@ -150,7 +151,8 @@ void disk_part(Tour& tour) {
     const std::string command = "bandlimit design disk --components 2 --plot disk.svg";
     tour.page.figure(tour.plot("disk.svg", {panel}, 640, 400), "Fitted by least squares over the plane.", command, 640);
     tour.page.table(rows, "The error is the integral of (K - disc)^2 over that of disc^2.", command);
-    tour.page.headline("error of a disc out of 1 / 2 / 3 phasors", rows[1][1] + " / " + rows[2][1] + " / " + rows[3][1]);
+    tour.page.headline("error of a disc out of 1 / 2 / 3 phasors",
+                       rows[1][1] + " / " + rows[2][1] + " / " + rows[3][1]);
 }
 
 /// A photograph at night: dark, and with small lamps in many colours, up to some hundred times as bright as white.
@@ -168,7 +170,8 @@ Image<float> night(View<const float> day) {
         const std::array<double, 3> tint{random.uniform(0.5, 1), random.uniform(0.25, 0.9), random.uniform(0.1, 0.8)};
         for (int y = top; y < top + 3; ++y)
             for (int x = left; x < left + 3; ++x)
-                for (int c = 0; c < 3; ++c) v(x, y, c) += static_cast<float>(bright * tint[static_cast<std::size_t>(c)]);
+                for (int c = 0; c < 3; ++c)
+                    v(x, y, c) += static_cast<float>(bright * tint[static_cast<std::size_t>(c)]);
     }
     return image;
 }
@@ -194,7 +197,8 @@ void bokeh_part(Tour& tour) {
     const Image<float> lights = night(read_picture(tour.path("coffee.png"), Space::automatic, tour.parallel).view());
     write_picture(tour.path("night.exr"), lights.view(), Depth::f16);
     const WeightGrid disc = parse_shape("disc:1", 2 * radius + 1);
-    const Image<float> exact = blurred(tour, lights, low_rank(disc, numerical_rank(svd_of(disc).values, disc.width, disc.height)));
+    const Image<float> exact =
+        blurred(tour, lights, low_rank(disc, numerical_rank(svd_of(disc).values, disc.width, disc.height)));
     std::vector<Page::Tile> tiles;
     const auto add = [&](const std::string& name, const Image<float>& image, const std::string& caption) {
         write_picture(tour.path(name + ".png"), image.view());
@@ -215,10 +219,11 @@ void bokeh_part(Tour& tour) {
             blurred(tour, lights, separable_terms(fit, radius, reach_for(fit, radius))),
             fmt::format("{} phasor{}: {}", count, count > 1 ? "s" : "", rings[static_cast<std::size_t>(count - 1)]));
     }
-    tour.page.gallery(tiles, "A photograph at night, with lamps, under a disc of 20 pixels radius.",
-                      "bandlimit bokeh night.exr bokeh.png --shape disc --radius 20 --rank 4\nbandlimit bokeh night.exr "
-                      "bokeh.png --shape disc --radius 20 --components 2",
-                      420);
+    tour.page.gallery(
+        tiles, "A photograph at night, with lamps, under a disc of 20 pixels radius.",
+        "bandlimit bokeh night.exr bokeh.png --shape disc --radius 20 --rank 4\nbandlimit bokeh night.exr "
+        "bokeh.png --shape disc --radius 20 --components 2",
+        420);
 }
 
 }  // namespace
