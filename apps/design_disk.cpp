@@ -28,10 +28,13 @@ void check(const Options& o) {
     const bool is_published = o.preset == "published";
     if (!is_published && o.preset != "fit")
         throw UsageError(fmt::format("--preset: \"{}\" is no preset; choose fit or published", o.preset));
-    if (o.components < 1 || o.components > (is_published ? 2 : most_disk_components))
-        throw UsageError(fmt::format("--components: {} is no count that {}; choose 1 to {}", o.components,
-                                     is_published ? "was published" : "is fitted",
-                                     is_published ? "2, or the preset fit" : std::to_string(most_disk_components)));
+    if (o.components < 1 || o.components > most_disk_components)
+        throw UsageError(fmt::format("--components: {} phasors; choose 1 to {}", o.components, most_disk_components));
+    if (is_published && o.components > 2)
+        throw UsageError(
+            fmt::format("--components: the published sets have 1 and 2 phasors, not {}; choose one of "
+                        "them, or the preset fit",
+                        o.components));
     if (o.reach >= 0 && o.radius == 0)
         throw UsageError("--reach: says how far weights go, which depends on a radius; add --radius PX");
 }
@@ -64,7 +67,8 @@ std::vector<std::string> lines_of(const Disk& disk, double error) {
                                                disk.components.size() == 1 ? "" : "s", disk.origin)};
     for (const Component& c : disk.components)
         lines.push_back(fmt::format("component     a {:9.6f}   b {:9.6f}   A {:9.6f}   B {:9.6f}", c.a, c.b, c.A, c.B));
-    lines.push_back(fmt::format("error         {:.5f}, the square of what differs, in parts of the disc's", error));
+    lines.push_back(
+        fmt::format("error         {:.5f}: the integral of (weight - disc)^2, in parts of that of disc^2", error));
     lines.push_back(fmt::format("edge          leaves 1 at {:.4f} and is 0 at {:.4f} radii; {:.3f} at the centre",
                                 profile.flat_until, profile.zero_from, profile.centre));
     lines.push_back(fmt::format("ringing       {:.3f} inside, {:.3f} outside, of a disc of height 1",
@@ -139,8 +143,8 @@ void add_design_disk(const DesignVerb& verb) {
         ->check(CLI::Range(0.01, largest_radius))
         ->type_name("PX");
     app->add_option("--reach", o->reach,
-                    "Weights left and right of the middle one; default: what leaves out at most 1 % of the sum, or "
-                    "for published what its users take")
+                    "Weights left and right of the middle one; default: until at most 1 % of the sum is left out; "
+                    "for published as far as in Garcia 2017")
         ->check(CLI::Range(0, longest_reach))
         ->type_name("PX");
 }

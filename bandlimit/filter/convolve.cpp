@@ -148,8 +148,8 @@ Convolution::Convolution(const ConvolutionWeights& weights, int width, int heigh
         fail("Convolution: weights of rank ", terms.size(), " are no single product; choose low-rank, direct or fft");
     chosen_ = *chosen;
     if (chosen_.method == Method::fft)
-        filter_.emplace(FftFilter(grid, weights.first_x, weights.first_y, width, height, options.edge_x,
-                                  options.edge_y, options.premultiply));
+        filter_.emplace(FftFilter(grid, weights.first_x, weights.first_y, width, height, options.edge_x, options.edge_y,
+                                  options.premultiply));
     else
         filter_.emplace(TermFilter(chosen_.method == Method::direct ? direct_terms(grid) : terms, weights.first_x,
                                    weights.first_y, width, height, options.edge_x, options.edge_y,
