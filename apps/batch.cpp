@@ -41,13 +41,13 @@ struct Item {
 };
 
 bool is_picture(const fs::path& path) {
-    constexpr std::array<std::string_view, 20> extensions{".png", ".jpg",  ".jpeg", ".jpe", ".tif", ".tiff",
+    constexpr std::array<std::string_view, 16> extensions{".png", ".jpg",  ".jpeg", ".jpe", ".tif", ".tiff",
                                                           ".exr", ".hdr",  ".rgbe", ".ppm", ".pgm", ".pnm",
                                                           ".pfm", ".webp", ".tga",  ".bmp"};
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return !extension.empty() && std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
