@@ -32,9 +32,10 @@ struct Options {
 };
 
 void check(const Options& o) {
-    if (is_shape_name(o.kernel)) read_weights(o.kernel, o.space, largest_side);
-    if (o.rank && (*o.rank < 1 || *o.rank > largest_rank))
-        throw UsageError(fmt::format("--rank: {}; pass 1 to {}", *o.rank, largest_rank));
+    int most = largest_rank;
+    if (is_shape_name(o.kernel)) most = std::min(most, read_weights(o.kernel, o.space, largest_side).width);
+    if (o.rank && (*o.rank < 1 || *o.rank > most))
+        throw UsageError(fmt::format("--rank: {}; pass 1 to {}", *o.rank, most));
     for (const auto& [option, factor] :
          {std::pair{"--non-negative", o.loss.non_negative}, {"--keep-zeros", o.loss.keep_zeros}})
         if (!(factor >= 0 && std::isfinite(factor)))
@@ -102,23 +103,26 @@ std::string kernel_line(const Options& o, const Analysis& a) {
     return line;
 }
 
-std::string rank_line(const Analysis& a) {
+std::string rank_line(const Options& o, const Analysis& a) {
     std::string line = fmt::format("rank          {} holds 99.9 % of the energy", a.nearly);
-    if (a.above_noise < a.exact)
-        line += fmt::format("; if the kernel is measured, {} {} above its noise", a.above_noise,
-                            a.above_noise == 1 ? "is" : "are");
+    if (!is_shape_name(o.kernel))
+        line += fmt::format("; {} suggested: what is above the noise of a measured kernel", a.above_noise);
     return line;
 }
 
-/// What is wrong with the weights that people see.
+/// What the two parts of the loss beside squares count, as shares of all magnitudes.
 std::string artefact_line(const WeightGrid& weights, const WeightGrid& kernel) {
-    double lowest = 0, leaked = 0;
+    double lowest = 0, negative = 0, leaked = 0, all = 0;
     for (std::size_t i = 0; i < weights.weights.size(); ++i) {
-        lowest = std::min(lowest, weights.weights[i]);
-        if (kernel.weights[i] == 0) leaked = std::max(leaked, std::abs(weights.weights[i]));
+        const double w = weights.weights[i];
+        lowest = std::min(lowest, w);
+        all += std::abs(w);
+        negative += std::max(0.0, -w);
+        if (kernel.weights[i] == 0) leaked += std::abs(w);
     }
-    return fmt::format("artefacts     lowest weight {:.4f} (rings), largest {:.4f} where the kernel is 0 (leaks)",
-                       lowest, leaked);
+    return fmt::format(
+        "artefacts     {} of the weights is negative (rings; the lowest {:.4f}), {} where the kernel is 0 (leaks)",
+        percent(negative / all), lowest, percent(leaked / all));
 }
 
 std::string pass_text(const SlantedPass& pass) {
@@ -209,7 +213,7 @@ Design make(const Options& o) {
     const int rank = static_cast<int>(terms.size());
 
     Design design;
-    design.lines = {kernel_line(o, a), rank_line(a)};
+    design.lines = {kernel_line(o, a), rank_line(o, a)};
     const auto add = [&](const std::vector<std::string>& more) {
         design.lines.insert(design.lines.end(), more.begin(), more.end());
     };
@@ -255,7 +259,8 @@ void add_design_separable(const DesignVerb& verb) {
         "bandlimit design separable disc:50:0.8 --rank 4 --optimise --keep-zeros 0.3 --non-negative 0.5 --plot "
         "disc.png",
         [o] { check(*o); }, [o] { return make(*o); });
-    app->add_option("kernel", o->kernel, "A shape: " + shape_names() + "; or an image of a kernel")
+    app->add_option("kernel", o->kernel,
+                    "An image of a kernel, or a shape on SIZE x SIZE points from -1 to 1:\n" + shape_lines())
         ->required()
         ->type_name("KERNEL|IMAGE");
     app->add_option("--rank", o->rank,
@@ -266,7 +271,8 @@ void add_design_separable(const DesignVerb& verb) {
         ->type_name("W");
     app->add_option("--keep-zeros", o->loss.keep_zeros, "What a weight costs where the kernel is 0, as 0.3; default 0")
         ->type_name("W");
-    app->add_flag("--optimise,--optimize", o->optimise, "Lower the loss: the mean of squares, and these two");
+    app->add_flag("--optimise,--optimize", o->optimise,
+                  "Lower the loss: the mean of squares and what these two add to it");
     add_space(app, o->space)->description("What an image's codes mean; default data: they are the weights");
 }
 

@@ -44,10 +44,11 @@ WeightGrid read_weights(const std::string& text, Space space, int largest_side) 
     return grid;
 }
 
-std::string shape_names() {
-    std::string names;
-    for (const ShapeInfo& info : shape_list()) names += (names.empty() ? "" : ", ") + std::string(info.name);
-    return names;
+std::string shape_lines() {
+    std::string lines;
+    for (const ShapeInfo& info : shape_list())
+        lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", info.name, info.summary);
+    return lines;
 }
 
 }  // namespace bandlimit::app

@@ -18,7 +18,7 @@ bool is_shape_name(const std::string& text);
 ///          than `largest_side`
 WeightGrid read_weights(const std::string& text, Space space, int largest_side);
 
-/// "disc:SIZE:LIMIT, box:SIZE:HALF, ...".
-std::string shape_names();
+/// All shapes with what they are, a line each.
+std::string shape_lines();
 
 }  // namespace bandlimit::app
