@@ -46,8 +46,8 @@ void reads_part(Tour& tour) {
     const std::string command = "bandlimit design downsample --fetches 8 --plot downsample.svg";
     std::vector<std::vector<std::string>> rows{{"filter", "reads", "error"}};
     const auto add = [&](const std::string& name, const Fetches& fetches) {
-        rows.push_back(
-            {name, fmt::format("{}", fetches.size()), fmt::format("{:.5f}", band_error(whole_filter(fetches)))});
+        rows.push_back({name, fmt::format("{}", fetches.size()),
+                        fmt::format("{:.5f}", band_error(whole_filter(fetches), 2).whole)});
     };
     add("box", {{0, 0, 1}});
     add("as published", downsample8());
