@@ -109,6 +109,11 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
 void add_design(Program& program) {
     CLI::App* cli = program.add_verb("design", "Make a filter to measure: its taps, its response, its cost",
                                      "bandlimit design downsample --fetches 8 --plot downsample.svg");
+    const DesignVerb verb{program, cli};
+    add_design_derivative(verb);
+    add_design_gaussian(verb);
+    add_design_sharpen(verb);
+    add_design_kernel(verb);
     require_one_subcommand(*cli, "design");
 }
 
