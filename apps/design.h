@@ -31,6 +31,9 @@ struct DesignVerb {
 CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
                           const std::string& example, std::function<void()> check, std::function<Design()> make);
 
+/// The subcommands, each in a file of its own.
+void add_design_disk(const DesignVerb& verb);
+void add_design_separable(const DesignVerb& verb);
 void add_design_derivative(const DesignVerb& verb);
 void add_design_gaussian(const DesignVerb& verb);
 void add_design_sharpen(const DesignVerb& verb);
