@@ -116,11 +116,7 @@ void check(const Options& o) {
         throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
     if (!o.at.empty()) parse_numbers("--at", o.at);
     phases_of(o), frequencies_of(o), rows_of(o);
-    if (o.is_taps_file()) {
-        if (!o.phase.empty() || !o.at.empty())
-            throw UsageError(
-                "analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
-    } else if (is_radial(parse_kernel(o.kernel)) && o.to) {
+    if (!o.is_taps_file() && is_radial(parse_kernel(o.kernel)) && o.to) {
         throw UsageError(
             fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
     }
@@ -382,17 +378,20 @@ void plot(const Options& o, const Report& r, const Subject& subject) {
     draw(panels, o.plot, 400 * static_cast<int>(panels.size()), 360);
 }
 
+Subject read_subject(const Options& o) {
+    if (!o.is_taps_file()) return parse_kernel(o.kernel);
+    TapsFile file = read_taps(o.kernel);
+    if (is_kernel(file)) return kernel_of(file, o.kernel);
+    if (file.fetches.empty()) taps_of(file, o.kernel);
+    if (!o.phase.empty() || !o.at.empty())
+        throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
+    return file;
+}
+
 void run(const Options& o) {
     if (o.list) return print_list(o.json);
     if (!o.plot.empty()) check_output_path(o.plot);
-    Subject subject;
-    if (o.is_taps_file()) {
-        TapsFile file = read_taps(o.kernel);
-        if (file.fetches.empty()) taps_of(file, o.kernel);
-        subject = std::move(file);
-    } else {
-        subject = parse_kernel(o.kernel);
-    }
+    const Subject subject = read_subject(o);
     const Report report = analyze(o, subject);
     if (!o.plot.empty()) plot(o, report, subject);
     if (o.json) print_json(to_json(report));

@@ -114,6 +114,10 @@ void add_design(Program& program) {
     add_design_disk(verb);
     add_design_downsample(verb);
     add_design_separable(verb);
+    add_design_derivative(verb);
+    add_design_gaussian(verb);
+    add_design_sharpen(verb);
+    add_design_kernel(verb);
     require_one_subcommand(*cli, "design");
 }
 

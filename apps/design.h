@@ -37,5 +37,9 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
 void add_design_disk(const DesignVerb& verb);
 void add_design_downsample(const DesignVerb& verb);
 void add_design_separable(const DesignVerb& verb);
+void add_design_derivative(const DesignVerb& verb);
+void add_design_gaussian(const DesignVerb& verb);
+void add_design_sharpen(const DesignVerb& verb);
+void add_design_kernel(const DesignVerb& verb);
 
 }  // namespace bandlimit::app

@@ -74,6 +74,7 @@ MipFilter filter_of(const MipsRecipe& recipe) {
     if (name == "downsample8") return downsample8();
     if (!is_taps_file(name)) return parse_kernel(name);
     const TapsFile file = read_taps(name);
+    if (is_kernel(file)) return kernel_of(file, name);
     if (file.factor != 2)
         throw UsageError(fmt::format(
             "--filter {}: its taps are made for a factor of {}, and every level halves; give taps of factor 2", name,

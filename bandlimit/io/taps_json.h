@@ -64,6 +64,9 @@ TapsFile read_taps(const std::string& path);
 /// throws   std::runtime_error if it has none
 const Taps& taps_of(const TapsFile& file, const std::string& name);
 
+/// Whether `file` is a kernel: it has pieces and no taps.
+inline bool is_kernel(const TapsFile& file) { return !file.taps && !file.pieces.empty(); }
+
 /// The kernel of `file`, which came from `name`, and is called so.
 /// throws   std::runtime_error if it has none
 Kernel kernel_of(const TapsFile& file, const std::string& name);
