@@ -95,7 +95,7 @@ void run(const Options& o) {
 void add_convolve(Program& program) {
     auto o = std::make_shared<Options>();
     CLI::App* verb = program.add_verb("convolve", "Run designed filters, or any weights, on an image",
-                                      "bandlimit convolve examples/coffee.png soft.png --image examples/kernel.png");
+                                      "bandlimit convolve examples/coffee.png soft.png --taps examples/binomial.json");
     add_pictures(verb, o->pictures);
     verb->add_option("--taps", o->taps, "Weights of a taps.json, as bandlimit design writes it: along both axes for taps")
         ->type_name("FILE");
