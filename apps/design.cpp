@@ -111,9 +111,9 @@ void add_design(Program& program) {
     CLI::App* cli = program.add_verb("design", "Make a filter to measure: its taps, its response, its cost",
                                      "bandlimit design downsample --fetches 8 --plot downsample.svg");
     const DesignVerb verb{program, cli};
-    add_design_disk(verb);
     add_design_downsample(verb);
     add_design_separable(verb);
+    add_design_disk(verb);
     add_design_derivative(verb);
     add_design_gaussian(verb);
     add_design_sharpen(verb);
