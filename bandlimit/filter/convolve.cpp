@@ -15,7 +15,7 @@ constexpr int largest_for_svd = 512;  // weights a side: half a minute of decomp
 
 // The time of a multiply-add of products, and of a butterfly of a transform, in multiply-adds of the direct method, as
 // filter/convolve_bench.cpp measures them.
-constexpr double product_time = 1.4, butterfly_time = 260;
+constexpr double product_time = 1.6, butterfly_time = 260;
 
 double magnitude(const WeightGrid& grid) {
     return std::accumulate(grid.weights.begin(), grid.weights.end(), 0.0,
@@ -148,8 +148,8 @@ Convolution::Convolution(const ConvolutionWeights& weights, int width, int heigh
         fail("Convolution: weights of rank ", terms.size(), " are no single product; choose low-rank, direct or fft");
     chosen_ = *chosen;
     if (chosen_.method == Method::fft)
-        filter_.emplace(FftFilter(grid, weights.first_x, weights.first_y, width, height, options.edge_x,
-                                  options.edge_y, options.premultiply));
+        filter_.emplace(FftFilter(grid, weights.first_x, weights.first_y, width, height, options.edge_x, options.edge_y,
+                                  options.premultiply));
     else
         filter_.emplace(TermFilter(chosen_.method == Method::direct ? direct_terms(grid) : terms, weights.first_x,
                                    weights.first_y, width, height, options.edge_x, options.edge_y,

@@ -76,8 +76,7 @@ IndexRange FftFilter::rows_needed(int first, int last) const {
         fail("FftFilter::rows_needed: rows ", first, " to ", last, " of ", height_, "; pass a part of them");
     const int begin = first / y_.outputs * y_.outputs;
     const int end = std::min(height_, ((last - 1) / y_.outputs + 1) * y_.outputs);
-    const IndexRange stored =
-        stored_indices({begin + first_y_, end + first_y_ + taps_y_ - 1}, height_, edge_y_);
+    const IndexRange stored = stored_indices({begin + first_y_, end + first_y_ + taps_y_ - 1}, height_, edge_y_);
     return stored.begin < stored.end ? stored : IndexRange{0, 0};
 }
 
@@ -172,8 +171,8 @@ private:
             const std::span<float> row{&output_.view()(0, y - top),
                                        static_cast<std::size_t>(width) * static_cast<std::size_t>(channels_)};
             filter_.border_.apply(row, left, y, channels_);
-            lost |= encode_row(row, filter_.premultiply_ || source_.encoding.associated, targets,
-                               y - target_.first_row, target_.encoding);
+            lost |= encode_row(row, filter_.premultiply_ || source_.encoding.associated, targets, y - target_.first_row,
+                               target_.encoding);
         }
         return lost;
     }
@@ -198,8 +197,7 @@ bool FftFilter::run(const SourceRows& source, const TargetRows& target, Parallel
              " with ", to.channels, "; need ", width_, " with equal channels");
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
-    if (needed.begin < needed.end &&
-        (needed.begin < source.first_row || needed.end > source.first_row + from.height))
+    if (needed.begin < needed.end && (needed.begin < source.first_row || needed.end > source.first_row + from.height))
         fail("FftFilter::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
              needed.begin, " to ", needed.end, " are needed");
     const int first = target.first_row / y_.outputs;

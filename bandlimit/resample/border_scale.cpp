@@ -66,7 +66,7 @@ void BorderScale::fill(double whole, double magnitude, const std::vector<int>& e
             const double inside = x < 0 || y < 0 ? whole : sum(x, y);
             if (!(std::abs(inside) > least))
                 fail("Edge::renormalize: output (", x, ", ", y,
-                                ") has no weight inside the image; use Edge::clamp or Edge::reflect");
+                     ") has no weight inside the image; use Edge::clamp or Edge::reflect");
             scale_.push_back(static_cast<float>(whole / inside));
         }
 }
@@ -108,7 +108,8 @@ BorderScale::BorderScale(std::span<const std::pair<double, double>> whole,
     kind_x_ = numbered(inside_x, whole_x, example_x);
     kind_y_ = numbered(inside_y, whole_y, example_y);
     fill(sum, magnitude, example_x, example_y, [&](int x, int y) {
-        const std::vector<double>&of_x = inside_x[static_cast<std::size_t>(x)], &of_y = inside_y[static_cast<std::size_t>(y)];
+        const std::vector<double>&of_x = inside_x[static_cast<std::size_t>(x)],
+              &of_y = inside_y[static_cast<std::size_t>(y)];
         return std::inner_product(of_x.begin(), of_x.end(), of_y.begin(), 0.0);
     });
 }

@@ -79,7 +79,7 @@ void check(const Terms& terms, int width, int height) {
 /// Output columns that are computed from top to bottom before the next ones.
 struct TermFilter::Strip {
     int first = 0, last = 0;
-    IndexRange read;                       ///< the source columns; may reach outside
+    IndexRange read;                              ///< the source columns; may reach outside
     std::vector<std::vector<TileRun>> runs = {};  ///< of each term with a bank of its own
     /// Else: output b * terms + t is what term t makes of chunk b of the columns, so that neighbours read the same.
     Bank x = {};
@@ -101,8 +101,8 @@ TermFilter::TermFilter(std::vector<BankTerm> terms, bool premultiply) : premulti
     border_ = BorderScale(whole, sums_inside(terms, &BankTerm::x, &BankTerm::sum_x),
                           sums_inside(terms, &BankTerm::y, &BankTerm::sum_y));
     for (auto first = terms.begin(); first != terms.end();) {
-        const auto last = std::stable_partition(
-            first + 1, terms.end(), [&](const BankTerm& t) { return read_the_same(t.y, first->y); });
+        const auto last = std::stable_partition(first + 1, terms.end(),
+                                                [&](const BankTerm& t) { return read_the_same(t.y, first->y); });
         add_group({first, last});
         for (; first != last; ++first) lines_.push_back({std::move(first->x), false, 0});
     }
@@ -182,8 +182,8 @@ std::uint64_t TermFilter::bytes(int channels, Parallel parallel) const {
     const std::vector<Strip> all = strips(channels, parallel);
     const Strip& widest = all.front();
     const IndexRange rows = rows_read(height_ / 2, std::min(height_, height_ / 2 + block));
-    const double lines = double(computed()) * (widest.last - widest.first) +
-                         (shifts_ > 0 ? widest.read.end - widest.read.begin : 0);
+    const double lines =
+        double(computed()) * (widest.last - widest.first) + (shifts_ > 0 ? widest.read.end - widest.read.begin : 0);
     return static_cast<std::uint64_t>(parallel.count() * 1.25 * (rows.end - rows.begin) * lines * channels *
                                       double(sizeof(float)));
 }
@@ -212,7 +212,8 @@ std::vector<TermFilter::Strip> TermFilter::strips(int channels, Parallel paralle
     // Each thread gets one, if they do not get too narrow.
     const double share = std::ceil(static_cast<double>(width_) / parallel.count());
     const int step = chunk_columns(channels);
-    const int columns = (static_cast<int>(std::max<double>(std::min(fitting, share), least_columns)) - 1) / step * step + step;
+    const int columns =
+        (static_cast<int>(std::max<double>(std::min(fitting, share), least_columns)) - 1) / step * step + step;
     std::vector<Strip> all;
     for (int first = 0; first < width_; first += columns) {
         const int last = first + std::min(columns, width_ - first);
@@ -264,7 +265,9 @@ public:
     }
 
 private:
-    std::size_t length(int width) const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels_); }
+    std::size_t length(int width) const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels_);
+    }
     bool keeps_source() const { return filter_.shifts_ > 0; }
 
     /// What the window knows row v by: rows that an edge leads to are not made twice, but for a wrap, whose rows would
@@ -362,8 +365,7 @@ bool TermFilter::run(const SourceRows& source, const TargetRows& target, Paralle
              " with ", to.channels, "; need ", source_width_, " and ", width_, " with equal channels");
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
-    if (needed.begin < needed.end &&
-        (needed.begin < source.first_row || needed.end > source.first_row + from.height))
+    if (needed.begin < needed.end && (needed.begin < source.first_row || needed.end > source.first_row + from.height))
         fail("TermFilter::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
              needed.begin, " to ", needed.end, " are needed");
     const std::vector<Strip> all = strips(from.channels, parallel);

@@ -18,9 +18,9 @@ struct BankTerm {
 /// Runs sums of products over images, from stored samples to stored samples, by contiguous blocks of rows.
 ///
 /// Each source row is filtered along x by all terms once, and the results are kept while outputs need them; along y all
-/// terms that read the same rows are one weighted sum. So a term costs the multiply-adds of its two passes only. A row of one
-/// weight is no pass at all, but a shift: weights in two dimensions that are no sum of few products run as one such
-/// term per column (direct_terms()), which is the direct convolution, by the same loop.
+/// terms that read the same rows are one weighted sum. So a term costs the multiply-adds of its two passes only. A row
+/// of one weight is no pass at all, but a shift: weights in two dimensions that are no sum of few products run as one
+/// such term per column (direct_terms()), which is the direct convolution, by the same loop.
 ///
 /// Under Edge::renormalize, what lies outside is dropped from the whole sum, and the rest of it is rescaled.
 ///
@@ -53,9 +53,9 @@ private:
     struct Strip;
     /// What makes the line of a term from a source row.
     struct Line {
-        Bank x = {};          ///< where outputs have weights of their own
+        Bank x = {};            ///< where outputs have weights of their own
         bool is_shift = false;  ///< else: the source row itself, `index` columns to the right,
-        int index = 0;        ///< or what row `index` of shared_x_ makes of it
+        int index = 0;          ///< or what row `index` of shared_x_ makes of it
     };
     /// Terms [first, first + count) that read the same rows for each output. Sample v of term first + t is line
     /// v * count + t of the bank.

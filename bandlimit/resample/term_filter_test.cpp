@@ -38,7 +38,8 @@ double shaded(const Fetches& fetches, const Image<float>& image, int x, int y, i
 Image<float> filtered(const Fetches& fetches, const Image<float>& image, int width, int height, Edge edge) {
     const Grid src{{image.width()}, {image.height()}}, dst{{width}, {height}};
     Image<float> out(width, height, 1, Layout::interleaved);
-    TermFilter(bank_terms(fetches, src, dst, edge, edge), false).run({image.view(), 0, {}}, {out.view(), 0, {}, {}}, {});
+    TermFilter(bank_terms(fetches, src, dst, edge, edge), false)
+        .run({image.view(), 0, {}}, {out.view(), 0, {}, {}}, {});
     return out;
 }
 
