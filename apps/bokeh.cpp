@@ -79,11 +79,15 @@ void run(const Options& o) {
     });
 }
 
+/// All shapes, in lines of about 90 letters.
 std::string shapes() {
     std::string names;
     for (const ShapeInfo& shape : shape_list()) {
         std::string name(shape.name);
-        names += (names.empty() ? "" : ", ") + name.erase(name.find(":SIZE"), 5);
+        name.erase(name.find(":SIZE"), 5);
+        const std::size_t in_line = names.size() - (names.rfind('\n') + 1);  // npos + 1 is 0
+        names += names.empty() ? "" : in_line + name.size() > 90 ? ",\n" : ", ";
+        names += name;
     }
     return names;
 }

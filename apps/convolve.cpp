@@ -21,7 +21,7 @@ void check(const Options& o) {
         throw UsageError("convolve: weights are given no times or twice; give one of --taps FILE and --image KERNEL");
     if (o.axis != "x" && o.axis != "y" && o.axis != "both")
         throw UsageError(fmt::format("--axis: \"{}\" is unknown; choose x, y or both", o.axis));
-    if (o.axis != "both" && o.taps.empty()) throw UsageError("--axis: belongs to --taps, of one axis");
+    if (o.axis != "both" && o.taps.empty()) throw UsageError("--axis: an image has both axes; use it with --taps");
     check_pictures(o.pictures);
 }
 
@@ -59,11 +59,12 @@ ChosenWeights weights_of_file(const Options& o) {
     ChosenWeights chosen;
     chosen.name = o.taps;
     if (file.factor != 1)
-        throw UsageError(fmt::format("{}: made for a factor of {}, and convolve keeps the size; use bandlimit resize "
-                                     "--kernel, or weights of factor 1",
-                                     o.taps, file.factor));
+        throw UsageError(
+            fmt::format("{}: made for a factor of {}, and convolve keeps the size; use bandlimit resize "
+                        "--kernel, or weights of factor 1",
+                        o.taps, file.factor));
     if (o.axis != "both" && !file.taps)
-        throw UsageError(fmt::format("--axis {}: {} has no taps of one axis", o.axis, o.taps));
+        throw UsageError(fmt::format("--axis {}: {} has no taps of one axis; leave the option out", o.axis, o.taps));
     if (o.radius > 0 && (file.components.empty() || !file.terms.empty()))
         throw UsageError(fmt::format("--radius: {} has its size; only components without terms need one", o.taps));
     if (file.taps) {
@@ -97,7 +98,8 @@ void add_convolve(Program& program) {
     CLI::App* verb = program.add_verb("convolve", "Run designed filters, or any weights, on an image",
                                       "bandlimit convolve examples/coffee.png soft.png --taps examples/binomial.json");
     add_pictures(verb, o->pictures);
-    verb->add_option("--taps", o->taps, "Weights of a taps.json, as bandlimit design writes it: along both axes for taps")
+    verb->add_option("--taps", o->taps,
+                     "Weights of a taps.json, as bandlimit design writes it: along both axes for taps")
         ->type_name("FILE");
     verb->add_option("--image", o->image,
                      "Weights of an image, centred: the mean of its colours times alpha, as codes have it.\n"

@@ -9,9 +9,10 @@ ImageTarget target_of(const PictureOptions& o, const ImageReader& reader) {
     const ImageInfo& in = reader.info();
     const FormatAbilities format = abilities_of(o.out);
     if (in.alpha >= 0 && !format.alpha)
-        throw std::runtime_error(fmt::format("{} has an alpha channel, which {} files cannot hold; write .png, or lay "
-                                             "it over a colour first with bandlimit resize --scale 1 --background",
-                                             o.in, format.name));
+        throw std::runtime_error(
+            fmt::format("{} has an alpha channel, which {} files cannot hold; write .png, or lay "
+                        "it over a colour first with bandlimit resize --scale 1 --background",
+                        o.in, format.name));
     const Depth depth = o.depth.value_or(nearest_depth(format, in.depth));
     return {in.width,
             in.height,

@@ -219,8 +219,7 @@ void run(const Options& o) {
     ImageWriter writer(o.out, out.target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
     treat_alpha_as_asked(o.space, options.premultiply, in.alpha, in.associated, out.target.alpha, from, to);
-    const RowFilter filter{"resize", "resizing",
-                           [&](int first, int last) { return resizer.rows_needed(first, last); },
+    const RowFilter filter{"resize", "resizing", [&](int first, int last) { return resizer.rows_needed(first, last); },
                            [&](const SourceRows& source, const TargetRows& target, Parallel threads) {
                                return resizer.run(source, target, threads);
                            }};

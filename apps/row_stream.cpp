@@ -52,8 +52,8 @@ int largest_band(const RowFilter& filter, int rows, int bands, int target_height
 }  // namespace
 
 void stream_rows(const RowFilter& filter, ImageReader& reader, const Encoding& from, ImageWriter& writer,
-                   const Encoding& to, const ImageTarget& target, const std::vector<float>& background,
-                   Parallel parallel, StreamReport& report) {
+                 const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel,
+                 StreamReport& report) {
     const ImageInfo& in = reader.info();
     const std::uint64_t source_row = row_bytes(in.width, in.channel_names.size(), in.depth);
     const std::uint64_t target_row = row_bytes(target.width, target.channel_names.size(), target.depth);

@@ -16,9 +16,9 @@ ConvolutionWeights approximated(const ChosenWeights& chosen, int rank) {
     if (rank == 0) return chosen.weights;
     const WeightGrid grid = grid_of(chosen.weights);
     if (rank > std::min(grid.width, grid.height))
-        throw std::runtime_error(fmt::format("--rank {}: {} has {} x {} weights, whose rank is at most {}", rank,
-                                             chosen.name, grid.width, grid.height,
-                                             std::min(grid.width, grid.height)));
+        throw std::runtime_error(
+            fmt::format("--rank {}: {} has {} x {} weights, whose rank is at most {}; pass that or less", rank,
+                        chosen.name, grid.width, grid.height, std::min(grid.width, grid.height)));
     return {low_rank(grid, rank), chosen.weights.first_x, chosen.weights.first_y};
 }
 
@@ -44,9 +44,8 @@ nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWei
     if (chosen.gamma != 1) report["hdr"] = chosen.gamma;
     report["edge"] = name_of(edge);
     for (const MethodCost& c : convolution.candidates())
-        report["candidates"].push_back({{"method", name_of(c.method)},
-                                        {"multiply_adds", c.multiply_adds},
-                                        {"relative_time", c.time / cost.time}});
+        report["candidates"].push_back(
+            {{"method", name_of(c.method)}, {"multiply_adds", c.multiply_adds}, {"relative_time", c.time / cost.time}});
     return report;
 }
 
@@ -54,9 +53,10 @@ nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWei
 void note_shift(const WeightGrid& grid, const ConvolutionWeights& weights) {
     const double x = weights.first_x + (grid.width - 1) / 2.0, y = weights.first_y + (grid.height - 1) / 2.0;
     if (x == 0 && y == 0) return;
-    note(fmt::format("the middle of the {} x {} weights lies {:g}, {:g} pixels from the pixel that they make: the "
-                     "picture moves by {:g}, {:g}",
-                     grid.width, grid.height, x, y, -x, -y));
+    note(
+        fmt::format("the middle of the {} x {} weights lies {:g}, {:g} pixels from the pixel that they make: the "
+                    "picture moves by {:g}, {:g}",
+                    grid.width, grid.height, x, y, -x, -y));
 }
 
 }  // namespace
@@ -120,8 +120,10 @@ PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, 
     note_shift(grid, weights);
     const auto convolution = std::make_shared<const Convolution>(weights, in.width, in.height, options);
     PictureFilter filter;
-    filter.rows = {verb, verb == "bokeh" ? "blurring" : "convolving",
-                   [convolution](int first, int last) { return convolution->rows_needed(first, last); }, {},
+    filter.rows = {verb,
+                   verb == "bokeh" ? "blurring" : "convolving",
+                   [convolution](int first, int last) { return convolution->rows_needed(first, last); },
+                   {},
                    rows_worth_a_band(grid.height)};
     filter.rows.run = [convolution, gamma = chosen.gamma, premultiply = options.premultiply](
                           const SourceRows& source, const TargetRows& target, Parallel parallel) {

@@ -31,12 +31,11 @@ std::vector<Place> places_of(int points, double radius, int reach) {
     return places;
 }
 
-float signed_power(float x, double exponent) {
-    return static_cast<float>(std::copysign(std::pow(std::abs(static_cast<double>(x)), exponent), static_cast<double>(x)));
-}
+/// In float: twice as fast as in double, and the root divides the relative error by the exponent again.
+float signed_power(float x, float exponent) { return std::copysign(std::pow(std::abs(x), exponent), x); }
 
 /// Raises the colours of a row, which may be multiplied by its alpha.
-void raise(std::span<float> row, int channels, int alpha, bool multiplied, double exponent) {
+void raise(std::span<float> row, int channels, int alpha, bool multiplied, float exponent) {
     const auto count = static_cast<std::size_t>(channels);
     for (std::size_t i = 0; i < row.size(); i += count) {
         const float a = multiplied && alpha >= 0 ? row[i + static_cast<std::size_t>(alpha)] : 1;
@@ -98,13 +97,13 @@ bool run_boosted(const Convolution& convolution, double gamma, bool premultiply,
     Image<float> blurred(to.width, to.height, to.channels, Layout::interleaved);
     for_rows(from.height, parallel, [&](int y) {
         decode_row(source.samples, y, source.encoding, premultiply, row_of(bright, y));
-        raise(row_of(bright, y), from.channels, alpha, multiplied, gamma);
+        raise(row_of(bright, y), from.channels, alpha, multiplied, static_cast<float>(gamma));
     });
     convolution.run({bright.view(), source.first_row, between}, {blurred.view(), target.first_row, between, {}},
                     parallel);
     std::atomic<bool> lost = false;
     for_rows(to.height, parallel, [&](int y) {
-        raise(row_of(blurred, y), to.channels, alpha, multiplied, 1 / gamma);
+        raise(row_of(blurred, y), to.channels, alpha, multiplied, static_cast<float>(1 / gamma));
         if (encode_row(row_of(blurred, y), multiplied, target.samples, y, target.encoding)) lost = true;
     });
     return lost;

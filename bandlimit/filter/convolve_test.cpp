@@ -238,8 +238,7 @@ TEST(Convolve, RefusesWhatCannotBe) {
     EXPECT_THROW(Convolution(derivative, 9, 9), Error);
     EXPECT_NO_THROW(Convolution(derivative, 9, 9, {.edge_x = Edge::reflect, .edge_y = Edge::reflect}));
     // All weights of the last column lie outside.
-    for (const Method method : methods)
-        EXPECT_THROW(Convolution(weights(2, 2, 3, 0), 9, 9, {.method = method}), Error);
+    for (const Method method : methods) EXPECT_THROW(Convolution(weights(2, 2, 3, 0), 9, 9, {.method = method}), Error);
     Image<float> out(5, 5, 2, Layout::interleaved);
     for (const Method method : methods) {
         const Convolution convolution(weights(3, 3, -1, -1), 5, 5, {.method = method});
