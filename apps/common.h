@@ -40,6 +40,8 @@ void require_one_subcommand(CLI::App& app, const std::string& noun);
 
 void add_info(Program& program);
 void add_resize(Program& program);
+void add_convolve(Program& program);
+void add_bokeh(Program& program);
 void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_compare(Program& program);

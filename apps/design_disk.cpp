@@ -100,7 +100,7 @@ Design make(const Options& o) {
     file.kind = "disk";
     file.components = disk.components;
     file.error = disk_error(disk.components);
-    file.radius = o.radius > 0 ? o.radius : 1;
+    file.radius = o.radius > 0 ? o.radius : 1;  // without weights it is the unit of components
     const double radius = o.radius > 0 ? o.radius : usual_radius;
     const int reach = o.reach >= 0      ? o.reach
                       : disk.reach >= 0 ? static_cast<int>(std::lround(disk.reach * radius))

@@ -95,6 +95,8 @@ int main(int argc, char** argv) {
     program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
     program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
     app::add_resize(program);
+    app::add_convolve(program);
+    app::add_bokeh(program);
     app::add_mips(program);
     app::add_pattern(program);
     app::add_compare(program);

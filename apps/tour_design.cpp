@@ -189,11 +189,12 @@ Image<float> blurred(const Tour& tour, const Image<float>& image, const Terms& w
 
 void bokeh_part(Tour& tour) {
     constexpr int radius = 20;
-    tour.page.section("Bokeh",
-                      "What an exact disc costs grows with its area. Terms and phasors cost what its radius costs, and "
-                      "show on bright lights: of low rank they leave a cross and a plaid of negative weights, of few "
-                      "phasors rings.",
-                      low_rank_source);
+    tour.page.section(
+        "Bokeh",
+        "What an exact disc costs grows with its area. Terms and phasors cost what its radius costs, and "
+        "show on bright lights: low rank leaves squares and corners of negative weight, few phasors leave "
+        "rings.",
+        low_rank_source);
     const Image<float> lights = night(read_picture(tour.path("coffee.png"), Space::automatic, tour.parallel).view());
     write_picture(tour.path("night.exr"), lights.view(), Depth::f16);
     const WeightGrid disc = parse_shape("disc:1", 2 * radius + 1);
@@ -205,14 +206,15 @@ void bokeh_part(Tour& tour) {
         tiles.push_back({name + ".png", caption});
     };
     add("bokeh-exact", exact, "exact");
-    const std::array<const char*, 4> artefacts{"a square with a bright cross", "corners, and dark bands",
-                                               "faint corners, and ripples along the border", "clean but for ripples"};
+    const std::array<const char*, 4> artefacts{"squares", "corners, cut by dark dots", "small dark dots at the corners",
+                                               "the same to the eye"};
     for (std::size_t i = 0; i < artefacts.size(); ++i) {
         const int rank = 1 << i;
         add(fmt::format("bokeh-rank{}", rank), blurred(tour, lights, low_rank(disc, rank)),
             fmt::format("rank {}: {}", rank, artefacts[i]));
     }
-    const std::array<const char*, 3> rings{"a bright middle and a soft border", "a ring inside", "a faint ring"};
+    const std::array<const char*, 3> rings{"a dark middle and a dark ring around", "rings inside and around",
+                                           "faint rings"};
     for (int count = 1; count <= 3; ++count) {
         const Components fit = fit_disk(count);
         add(fmt::format("bokeh-phasors{}", count),

@@ -53,9 +53,13 @@ PlacedWeights2D spread_out(const SymmetricGrid& grid, int count, const std::vect
 
 double output_texel(const RateGoal& goal) { return goal.upsample ? 0.25 : (goal.factor - 1) / 2.0; }
 
+void check_taps(const char* function, int count, const RateGoal& goal) {
+    check_goal(function, goal);
+    check_count(function, count, most_taps, goal);
+}
+
 Taps downsample_taps(int count, const RateGoal& goal) {
-    check_goal("downsample_taps", goal);
-    check_count("downsample_taps", count, most_taps, goal);
+    check_taps("downsample_taps", count, goal);
     const int points = goal.upsample ? 2 * count : count;
     const SymmetricGrid grid(1, origin_of(points), (points + 1) / 2, goal);
     const std::vector<double> half = best_weights(grid, std::vector<bool>(grid.size(), true), goal);

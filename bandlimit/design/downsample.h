@@ -41,6 +41,9 @@ double output_texel(const RateGoal& goal);
 /// example downsample_taps(8)     // .46369 .16358 -.07650 -.05078, mirrored
 Taps downsample_taps(int count, const RateGoal& goal = {});
 
+/// Throws Error, naming `function`, for arguments that alone are out of range: those of downsample_taps().
+void check_taps(const char* function, int count, const RateGoal& goal);
+
 /// The best weights on count x count texels, and what dropping the small ones costs.
 struct SparseWeights {
     PlacedWeights2D all;        ///< the best of the whole square
@@ -87,6 +90,9 @@ std::vector<FetchDesign> downsample_curve(int most, const RateGoal& goal = {}, c
 /// throws  Error as downsample_curve, and for counts that no symmetric filter has
 /// example downsample_fetches(8)    // error .02779, as the published filter
 FetchDesign downsample_fetches(int count, const RateGoal& goal = {}, const FetchOptions& options = {});
+
+/// As check_taps(), of downsample_fetches().
+void check_fetches(const char* function, int count, const RateGoal& goal, const FetchOptions& options);
 
 /// The weights that downsample_weights() keeps, folded into as few fetches as cover them: neighbours of one sign share
 /// one, as good as its position and weight, optimised with all others, allow.

@@ -301,7 +301,7 @@ private:
 
 namespace {
 
-void check(const char* function, int most, const RateGoal& goal, const FetchOptions& options) {
+void check_curve(const char* function, int most, const RateGoal& goal, const FetchOptions& options) {
     check_goal(function, goal);
     if (most < 1 || most > most_fetches) fail(function, ": ", most, " fetches; pass 1 to ", most_fetches);
     if (options.taps < 0 || options.taps > most_side)
@@ -339,7 +339,7 @@ bool is_worth_it(const FetchDesign& design, const std::vector<FetchDesign>& curv
 }  // namespace
 
 std::vector<FetchDesign> downsample_curve(int most, const RateGoal& goal, const FetchOptions& options) {
-    check("downsample_curve", most, goal, options);
+    check_curve("downsample_curve", most, goal, options);
     Search search(goal, options);
     std::vector<FetchPattern> patterns;
     if (options.layout == FetchLayout::square) {
@@ -356,15 +356,18 @@ std::vector<FetchDesign> downsample_curve(int most, const RateGoal& goal, const 
     return curve;
 }
 
-FetchDesign downsample_fetches(int count, const RateGoal& goal, const FetchOptions& options) {
-    check("downsample_fetches", count, goal, options);
+void check_fetches(const char* function, int count, const RateGoal& goal, const FetchOptions& options) {
+    check_curve(function, count, goal, options);
     const bool is_square = options.layout == FetchLayout::square;
     const int side = static_cast<int>(std::lround(std::sqrt(count)));
-    if (is_square && side * side != count)
-        fail("downsample_fetches: ", count, " fetches are no square; pass ", side * side);
+    if (is_square && side * side != count) fail(function, ": ", count, " fetches are no square; pass ", side * side);
     if (!is_square && !goal.upsample && count % 4 > 1)
-        fail("downsample_fetches: ", count,
-             " fetches; symmetric ones come in fours, with one more in the middle or not: pass ", count / 4 * 4 + 4);
+        fail(function, ": ", count, " fetches; symmetric ones come in fours, with one more in the middle or not: pass ",
+             count / 4 * 4 + 4);
+}
+
+FetchDesign downsample_fetches(int count, const RateGoal& goal, const FetchOptions& options) {
+    check_fetches("downsample_fetches", count, goal, options);
     return downsample_curve(count, goal, options).back();
 }
 

@@ -15,7 +15,7 @@ constexpr int largest_for_svd = 512;  // weights a side: half a minute of decomp
 
 // The time of a multiply-add of products, and of a butterfly of a transform, in multiply-adds of the direct method, as
 // filter/convolve_bench.cpp measures them.
-constexpr double product_time = 1.4, butterfly_time = 70;
+constexpr double product_time = 1.4, butterfly_time = 260;
 
 double magnitude(const WeightGrid& grid) {
     return std::accumulate(grid.weights.begin(), grid.weights.end(), 0.0,

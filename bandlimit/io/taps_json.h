@@ -17,7 +17,7 @@
 //       "pieces": [ { "begin": 0, "end": 1, "coefficients": [ ... ] } ],
 //                                         a kernel: on begin <= |x| < end the sum of coefficients[n] (|x| - begin)^n
 //       "loss": 0.02, "singular_values": [ ... ], "radius": 1 }
-//                                         optional: what was minimised, of the shape given, and of the disc
+//                                         optional: what was minimised, of the shape given, of the disc in samples
 //
 // What applies of the five lists is there; all that are there describe one filter. Other keys are allowed and ignored.
 // Limits: 65536 numbers in a list, |first| <= 1000000, 64 terms of equal lengths, 16 components, 64 pieces

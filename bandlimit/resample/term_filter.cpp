@@ -393,7 +393,8 @@ Terms direct_terms(const WeightGrid& weights) {
                   std::vector<double>(static_cast<std::size_t>(weights.width))};
         for (int y = 0; y < weights.height; ++y) term.column[static_cast<std::size_t>(y)] = weights.at(x, y);
         term.row[static_cast<std::size_t>(x)] = 1;
-        if (std::any_of(term.column.begin(), term.column.end(), [](double w) { return w != 0; }))
+        const bool is_last_hope = terms.empty() && x + 1 == weights.width;
+        if (is_last_hope || std::any_of(term.column.begin(), term.column.end(), [](double w) { return w != 0; }))
             terms.push_back(std::move(term));
     }
     return terms;

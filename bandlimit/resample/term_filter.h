@@ -84,7 +84,7 @@ private:
     bool premultiply_;
 };
 
-/// `weights` as a term per column that is not all 0: what TermFilter runs directly.
+/// `weights` as a term per column that is not all 0, and at least one: what TermFilter runs directly.
 Terms direct_terms(const WeightGrid& weights);
 
 }  // namespace bandlimit

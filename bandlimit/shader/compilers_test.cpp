@@ -40,14 +40,15 @@ public:
         const int unit = function<int(void*, int, const char*)>("spAddTranslationUnit")(request, language, "shader");
         function<void(void*, int, const char*, const char*)>("spAddTranslationUnitSourceString")(
             request, unit, "shader", source.c_str());
-        const int point = function<int(void*, int, const char*, int)>("spAddEntryPoint")(request, unit, entry.c_str(),
-                                                                                         stage_compute);
+        const int point =
+            function<int(void*, int, const char*, int)>("spAddEntryPoint")(request, unit, entry.c_str(), stage_compute);
         const int result = function<int(void*)>("spCompile")(request);
         const std::string said = function<const char*(void*)>("spGetDiagnosticOutput")(request);
         std::string code;
         if (result >= 0) {
             std::size_t size = 0;
-            const void* data = function<const void*(void*, int, std::size_t*)>("spGetEntryPointCode")(request, point, &size);
+            const void* data =
+                function<const void*(void*, int, std::size_t*)>("spGetEntryPointCode")(request, point, &size);
             code.assign(static_cast<const char*>(data), size);
         }
         function<void(void*)>("spDestroyCompileRequest")(request);

@@ -46,12 +46,14 @@ std::string wrapper(Dialect dialect, bool only_some) {
         "input_binding(0, source)\nsampler_binding(1, source_sampler)\nresult_binding(2, result)\n"
         "input_binding(3, other)\nkernel(every_case, 8, 8) {\n    image_size(result_size, result)\n"
         "    let(int2, at) = group_position * 8 + thread_position;\n    let(int, band) = at.y / ",
-        height, ";\n    let(float2, uv) = float2(", number(first_uv), " + (float(at.x) + 0.5) * ", number(step_x), ", ", number(first_uv),
-        " + (float(at.y - band * ", height, ") + 0.5) * ", number(step_y), ");\n    let(float2, texel) = float2(",
-        number(1.0 / source_width), ", ", number(1.0 / source_height), ");\n    var(float4, value) = float4(0.0, 0.0, 0.0, 0.0);\n");
+        height, ";\n    let(float2, uv) = float2(", number(first_uv), " + (float(at.x) + 0.5) * ", number(step_x), ", ",
+        number(first_uv), " + (float(at.y - band * ", height, ") + 0.5) * ", number(step_y),
+        ");\n    let(float2, texel) = float2(", number(1.0 / source_width), ", ", number(1.0 / source_height),
+        ");\n    var(float4, value) = float4(0.0, 0.0, 0.0, 0.0);\n");
     for (std::size_t i = 0; i < all_cases().size(); ++i)
         if (!only_some || all_cases()[i].at_all_edges)
-            text += message("    if (band == ", i, ") {\n        value = ", call_of(all_cases()[i], dialect), ";\n    }\n");
+            text +=
+                message("    if (band == ", i, ") {\n        value = ", call_of(all_cases()[i], dialect), ";\n    }\n");
     text += "    if (at.x < result_size.x && at.y < result_size.y) {\n        store(result, at, value);\n    }\n}\n";
     const std::string translated =
         replaced(replaced(translate(text, dialect), "rgba16float", "rgba32float"), "rgba16f", "rgba32f");
@@ -122,9 +124,9 @@ void expect_right(const std::vector<float>& result, Edge edge, bool only_some, i
     }
 }
 
-#define BANDLIMIT_NEED(reason)                                                   \
-    do {                                                                         \
-        if (is_sanitized) GTEST_SKIP() << "not under sanitizers: a driver's own"; \
+#define BANDLIMIT_NEED(reason)                                                                \
+    do {                                                                                      \
+        if (is_sanitized) GTEST_SKIP() << "not under sanitizers: a driver's own";             \
         if (const std::string missing_ = reason; !missing_.empty()) GTEST_SKIP() << missing_; \
     } while (false)
 

@@ -79,8 +79,7 @@ void Vulkan::State::open() {
     if (family == count) throw std::runtime_error("no queue for compute");
 
     const float priority = 1;
-    const VkDeviceQueueCreateInfo queues{
-        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
+    const VkDeviceQueueCreateInfo queues{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
     VkDeviceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
     info.queueCreateInfoCount = 1;
@@ -136,8 +135,8 @@ public:
     std::vector<float> operator()(const std::vector<std::uint32_t>& spirv) {
         begin();
         for (const Picture* p : d_.textures) inputs_.push_back(upload(*p));
-        result_ = texture(d_.width, d_.height, result_format(),
-                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+        result_ =
+            texture(d_.width, d_.height, result_format(), VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
         barrier(result_.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
         bind(spirv);
         vkCmdDispatch(commands_, static_cast<std::uint32_t>(d_.groups_x), static_cast<std::uint32_t>(d_.groups_y), 1);
@@ -155,8 +154,8 @@ private:
         VkCommandPool pool = VK_NULL_HANDLE;
         require(vkCreateCommandPool(s_.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
         later([this, pool] { vkDestroyCommandPool(s_.device, pool, nullptr); });
-        const VkCommandBufferAllocateInfo info{
-            VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+        const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
         require(vkAllocateCommandBuffers(s_.device, &info, &commands_), "vkAllocateCommandBuffers");
         const VkCommandBufferBeginInfo once{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                             VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
@@ -173,8 +172,8 @@ private:
         later([this, h = b.handle] { vkDestroyBuffer(s_.device, h, nullptr); });
         VkMemoryRequirements needs{};
         vkGetBufferMemoryRequirements(s_.device, b.handle, &needs);
-        const VkDeviceMemory memory = s_.allocate(
-            needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, cleanup_);
+        const VkDeviceMemory memory =
+            s_.allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, cleanup_);
         require(vkBindBufferMemory(s_.device, b.handle, memory, 0), "vkBindBufferMemory");
         require(vkMapMemory(s_.device, memory, 0, size, 0, &b.data), "vkMapMemory");
         return b;
@@ -234,9 +233,9 @@ private:
     }
 
     static VkBufferImageCopy whole(int width, int height) {
-        return {0,           0,
-                0,           colour_layer,
-                {0, 0, 0},   {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1}};
+        return {0,         0,
+                0,         colour_layer,
+                {0, 0, 0}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1}};
     }
 
     VkSampler sampler() {
@@ -292,8 +291,8 @@ private:
         VkDescriptorPool pool = VK_NULL_HANDLE;
         require(vkCreateDescriptorPool(s_.device, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
         later([this, pool] { vkDestroyDescriptorPool(s_.device, pool, nullptr); });
-        const VkDescriptorSetAllocateInfo allocate{
-            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1, &layout};
+        const VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1,
+                                                   &layout};
         VkDescriptorSet set = VK_NULL_HANDLE;
         require(vkAllocateDescriptorSets(s_.device, &allocate, &set), "vkAllocateDescriptorSets");
         for (const Binding& b : all) {
