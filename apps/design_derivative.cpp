@@ -33,8 +33,11 @@ void check(Options& o) {
 /// H / i about the place where the derivative is taken.
 double height_at(const DerivativeDesign& d, double f) { return response(PlacedWeights(d.taps, d.position), f).imag(); }
 
+/// Without the rounding of what should be 0.
+double ramp_gain(const DerivativeDesign& d) { return std::abs(d.ramp_gain) < 1e-9 ? 0 : d.ramp_gain; }
+
 std::string ramp_line(const DerivativeDesign& d) {
-    const double gain = std::abs(d.ramp_gain) < 1e-9 ? 0 : d.ramp_gain;
+    const double gain = ramp_gain(d);
     std::string line = fmt::format("ramp          a slope of 1 comes out as {:.6g}", gain);
     if (std::abs(gain - 1) > 1e-9)
         line += gain == 0 ? ": slopes are lost; keep them with --ramp" : "; make it 1 with --ramp";
@@ -60,7 +63,7 @@ Design make(const Options& o) {
                     ramp_line(d),
                     fmt::format("noise         white noise of variance 1 comes out with {:.4g}", variance(d.taps))};
     for (const std::string& line :
-         response_lines("H / ideal", [&](double f) { return f == 0 ? d.ramp_gain : height_at(d, f) / (2 * pi * f); }))
+         response_lines("H / ideal", [&](double f) { return f == 0 ? ramp_gain(d) : height_at(d, f) / (2 * pi * f); }))
         design.lines.push_back(line);
     design.lines.push_back("one axis      what follows is for the derivative along x; along y it is as much again");
     design.panels = {weights_panel(d.taps, d.position),

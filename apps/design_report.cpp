@@ -25,7 +25,12 @@ std::vector<std::string> response_lines(const std::string& label, const std::fun
 }
 
 Panel weights_panel(const Taps& taps, double output) {
-    return {"Weights", "distance from the output (samples)", "weight", {stems("", taps.first - output, taps.weights)}};
+    const double first = taps.first - output, count = static_cast<double>(taps.weights.size());
+    return {"Weights",
+            "distance from the output (samples)",
+            "weight",
+            {stems("", first, taps.weights)},
+            Range{first - 0.5, first + count - 0.5}};
 }
 
 Panel response_panel(const std::string& title, const std::string& y_label, std::vector<Series> series) {
