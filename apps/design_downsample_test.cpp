@@ -11,9 +11,10 @@ const std::string verb = "design downsample ";
 
 /// A picture of waves of that many cycles per texel along x.
 void save_waves(const std::string& path, double frequency) {
-    save(path, image_of<std::uint8_t>(64, 64, 1, [&](int x, int, int) {
-             return std::lround(128 + 100 * std::cos(2 * 3.14159265358979 * frequency * x));
-         }));
+    AnyImage image = image_of<std::uint8_t>(64, 64, 1, [&](int x, int, int) {
+        return std::lround(128 + 100 * std::cos(2 * 3.14159265358979 * frequency * x));
+    });
+    save(path, image);
 }
 
 TEST(DesignDownsample, FetchesGoThroughOtherVerbs) {
@@ -73,7 +74,7 @@ TEST(DesignDownsample, RefusesInOneLine) {
                                           {"--layout ring", "--layout"},
                                           {"--weighting 1", "--weighting"},
                                           {"--max-gain 0.5", "max_gain"}})
-        EXPECT_TRUE(fails(shell(verb + arguments), 2, what)) << arguments;
+        EXPECT_TRUE(fails(2, shell(verb + arguments), what)) << arguments;
 }
 
 }  // namespace
