@@ -73,7 +73,7 @@ TEST(DesignDownsample, RefusesInOneLine) {
                                           {"--layout ring", "--layout"},
                                           {"--weighting 1", "--weighting"},
                                           {"--max-gain 0.5", "max_gain"}})
-        EXPECT_TRUE(fails(shell(verb + arguments), 2, what)) << arguments;
+        EXPECT_TRUE(fails(2, shell(verb + arguments), what)) << arguments;
 }
 
 }  // namespace
