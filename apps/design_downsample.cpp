@@ -93,11 +93,12 @@ void describe(Design& design, const Options& o, const PlacedWeights2D& whole) {
                     error.whole, error.pass, error.stop));
     design.lines.push_back(fmt::format("largest gain  {:.5f}", max_gain(whole)));
     const Responses h = responses_of(whole);
+    const auto cell = [](double v) { return fmt::format("{:>8.4f}", std::abs(v) < 5e-5 ? 0.0 : v); };
     std::string f = "f            ", axis = "H on an axis ", diagonal = "H at (f, f)  ";
     for (int i = 0; i <= 8; ++i) {
         f += fmt::format("{:>8.4f}", i / 16.0);
-        axis += fmt::format("{:>8.4f}", h.axis(i / 16.0));
-        diagonal += fmt::format("{:>8.4f}", h.diagonal(i / 16.0));
+        axis += cell(h.axis(i / 16.0));
+        diagonal += cell(h.diagonal(i / 16.0));
     }
     f += o.goal.upsample ? "  cycles per sample of the larger picture" : "  cycles per sample";
     design.lines.insert(design.lines.end(), {f, axis, diagonal});
