@@ -35,7 +35,8 @@ FetchLayout parse_layout(const std::string& text) {
 void set_weighting(RateGoal& goal, const std::string& text) {
     const std::vector<double> weights = parse_numbers("--weighting", text);
     if (weights.size() != 2)
-        throw UsageError("--weighting: \"" + text + "\" must be two numbers, of pass band and stop band, as 1,4");
+        throw UsageError("--weighting: \"" + text +
+                         "\" is not two numbers; pass those of pass band and stop band, as 1,4");
     goal.pass_weight = weights[0], goal.stop_weight = weights[1];
 }
 

@@ -38,9 +38,11 @@ TEST(DesignDownsample, FetchesGoThroughOtherVerbs) {
     EXPECT_LT(phase["response"][1]["gain"].get<double>(), 0.1);
     EXPECT_NEAR(phase["response_diagonal"][1]["gain"].get<double>(), 0, 0.1);
     EXPECT_EQ(phase["weights"].size(), 8u);
-    // A wave that the half cannot hold is gone there, but for what analyze says is left.
+    // Mips run it, and say so.
     save_waves(shell / "waves.png", 3.0 / 8);
-    ASSERT_TRUE(succeeds(shell("mips waves.png waves.ktx2 --role data --filter eight.json")));
+    const Outcome mips = shell("mips waves.png waves.ktx2 --role data --filter eight.json --json");
+    ASSERT_TRUE(succeeds(mips));
+    EXPECT_EQ(mips.json()["filter"]["x"], "8 fetches");
 }
 
 TEST(DesignDownsample, TapsAreOfOneAxis) {

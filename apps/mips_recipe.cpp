@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "apps/common.h"
 #include "bandlimit/io/taps_json.h"
 
@@ -86,7 +88,13 @@ MipFilter filter_of(const MipsRecipe& recipe) {
 std::string name_of(const MipFilter& filter, int length) {
     if (const Kernel* kernel = std::get_if<Kernel>(&filter)) return kernel->name;
     if (std::holds_alternative<Taps>(filter)) return "taps";
-    if (const Fetches* fetches = std::get_if<Fetches>(&filter)) return fmt::format("{} fetches", fetches->size());
+    if (const Fetches* fetches = std::get_if<Fetches>(&filter)) {
+        const Fetches known = downsample8();
+        const bool is_known =
+            std::equal(fetches->begin(), fetches->end(), known.begin(), known.end(),
+                       [](const Fetch& a, const Fetch& b) { return a.x == b.x && a.y == b.y && a.weight == b.weight; });
+        return is_known ? "downsample8" : fmt::format("{} fetches", fetches->size());
+    }
     return auto_kernel({length, 0, 1}, {mip_length(length, 1), 0, 1}).name;
 }
 
