@@ -36,8 +36,8 @@ std::string bytes_text(double bytes) {
 std::string cost_line(const Design& d, const Size& size) {
     constexpr double texel = 8;  // RGBA16F
     const double pixels = static_cast<double>(size.width) * size.height;
-    const double outputs = pixels / d.file.factor / d.file.factor;
-    const double between = d.intermediates * outputs;
+    const double scale = static_cast<double>(d.enlarges) / d.file.factor;
+    const double outputs = pixels * scale * scale, between = d.intermediates * pixels * scale;
     std::string line = fmt::format("cost          {:.6g} reads", d.file.cost.value_or(0));
     if (d.file.multiply_adds) line += fmt::format(", {:.6g} multiply-adds", *d.file.multiply_adds);
     return line + fmt::format(" per output; of {} x {} RGBA16F at least {} read, {} written", size.width, size.height,
@@ -47,6 +47,7 @@ std::string cost_line(const Design& d, const Size& size) {
 void print(const Design& d, const Options& o) {
     for (const std::string& line : d.lines) fmt::print("{}\n", line);
     if (d.file.cost) fmt::print("{}\n", cost_line(d, parse_size("--size", o.size)));
+    for (const std::string& line : d.table) fmt::print("{}\n", line);
 }
 
 void ship(const Design& d, const Options& o, const ShaderInfo& info) {
@@ -109,6 +110,14 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
 void add_design(Program& program) {
     CLI::App* cli = program.add_verb("design", "Make a filter to measure: its taps, its response, its cost",
                                      "bandlimit design downsample --fetches 8 --plot downsample.svg");
+    const DesignVerb verb{program, cli};
+    add_design_downsample(verb);
+    add_design_separable(verb);
+    add_design_disk(verb);
+    add_design_derivative(verb);
+    add_design_gaussian(verb);
+    add_design_sharpen(verb);
+    add_design_kernel(verb);
     require_one_subcommand(*cli, "design");
 }
 

@@ -9,7 +9,12 @@
 namespace bandlimit::app {
 
 std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& info, Dialect dialect) {
-    ShaderParts parts{.fetches = design.fetches, .terms = design.terms};
+    ShaderParts parts{.fetches = design.fetches};
+    ShaderInfo named = info;
+    if (!design.terms.empty()) {  // as high as the shape; what is pasted shall keep the brightness of pictures
+        parts.terms = with_unit_sum(design.terms);
+        named.notes.push_back("Weights below are divided by their sum.");
+    }
     if (design.taps) {
         parts.taps = *design.taps;
         // Reads along one axis are the taps in fewer of them; others are a filter of both axes.
@@ -26,7 +31,7 @@ std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& inf
         throw UsageError(design.components.empty()
                              ? "--emit: this design has no weights that a shader could run; leave it out"
                              : "--emit: phasors become weights at a radius in pixels; add --radius PX");
-    return bandlimit::shaders_of(parts, info, dialect);
+    return bandlimit::shaders_of(parts, named, dialect);
 }
 
 std::vector<std::string> write_shaders(const TapsFile& design, const ShaderInfo& info,

@@ -8,7 +8,8 @@
 
 namespace bandlimit::app {
 
-/// The files of `design` in one dialect: functions first, then whole compute shaders.
+/// The files of `design` in one dialect: functions first, then whole compute shaders. Terms are scaled
+/// to a sum of 1.
 ///
 /// throws   UsageError for a design without anything that a shader could run
 std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& info, Dialect dialect);

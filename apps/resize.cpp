@@ -107,11 +107,15 @@ ResizeOptions resize_options(const Options& o) {
     options.premultiply = o.premultiply.value_or(o.space != Space::data);
     if (o.is_taps_file()) {
         const TapsFile file = read_taps(o.kernel);
-        const Taps& taps = taps_of(file, o.kernel);
-        double sum = 0;
-        for (const double w : taps.weights) sum += w;
-        if (std::abs(sum) < 1e-9) options.edge = Edge::reflect;  // nothing to renormalize to
-        options.reconstruction = taps;
+        if (is_kernel(file)) {
+            options.reconstruction = kernel_of(file, o.kernel);
+        } else {
+            const Taps& taps = taps_of(file, o.kernel);
+            double sum = 0;
+            for (const double w : taps.weights) sum += w;
+            if (std::abs(sum) < 1e-9) options.edge = Edge::reflect;  // nothing to renormalize to
+            options.reconstruction = taps;
+        }
     } else if (o.kernel != "auto") {
         options.reconstruction = parse_kernel(o.kernel);
     }

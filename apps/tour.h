@@ -30,5 +30,6 @@ void tour_splines(Tour& tour);  ///< linear, quadratic and cubic interpolation
 void tour_images(Tour& tour);   ///< zone plate, kernels of auto, star, photograph
 void tour_mips(Tour& tour);     ///< mip maps: light, coverage, normals, motion
 void tour_audit(Tour& tour);    ///< what other resizers do
+void tour_design(Tour& tour);   ///< designed filters: few reads, low rank, phasors, bokeh
 
 }  // namespace bandlimit::app

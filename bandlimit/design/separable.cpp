@@ -15,6 +15,8 @@
 namespace bandlimit {
 namespace {
 
+constexpr int rounds = 15;
+
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// What one weight adds to the sum that the mean is of, with |w| as sqrt(w^2 + smoothing^2).
@@ -111,7 +113,7 @@ double separable_loss(const WeightGrid& shape, const WeightGrid& weights, const 
 }
 
 SeparableFit optimise_separable(const WeightGrid& shape, const Terms& start, const SeparableLoss& loss,
-                                const std::function<void(double loss)>& progress) {
+                                const std::function<void(double done)>& progress) {
     SeparableFit fit{start, separable_loss(shape, expanded(start), loss)};
     fit.start_loss = fit.loss;
     if (!std::isfinite(fit.loss)) fail("optimise_separable: weights or shape are not finite; pass finite ones");
@@ -121,15 +123,16 @@ SeparableFit optimise_separable(const WeightGrid& shape, const Terms& start, con
     Terms terms = start;
     std::vector<double> parameters((start[0].column.size() + start[0].row.size()) * start.size());
     for_each_parameter(start, parameters, [](double& parameter, double weight) { parameter = weight; });
-    for (double smoothing = 0.3; smoothing >= 1e-5 && peak > 0; smoothing /= 2) {
-        fit.iterations += minimise(shape, start.size(), loss, smoothing * peak, parameters);
+    // Of a shape that is 0 the best weights are 0, which no smoothing in parts of its peak leads to.
+    for (int round = 0; round < rounds && peak > 0; ++round) {
+        fit.iterations += minimise(shape, start.size(), loss, std::ldexp(0.3 * peak, -round), parameters);
         for_each_parameter(terms, parameters, [](double parameter, double& weight) { weight = parameter; });
         const double reached = separable_loss(shape, expanded(terms), loss);
         if (reached < fit.loss) {
             fit.loss = reached;
             fit.terms = terms;
         }
-        if (progress) progress(fit.loss);
+        if (progress) progress((round + 1.0) / rounds);
     }
     return fit;
 }

@@ -88,12 +88,12 @@ TEST(OptimiseSeparable, GrowsWithTheShape) {
 
 TEST(OptimiseSeparable, SaysHowFarItIs) {
     const WeightGrid shape = parse_shape("disc:12:0.8");
-    std::vector<double> losses;
-    const SeparableFit fit =
-        optimise_separable(shape, low_rank(shape, 2), {0.5, 0.3}, [&](double loss) { losses.push_back(loss); });
-    ASSERT_FALSE(losses.empty());
-    EXPECT_TRUE(std::is_sorted(losses.rbegin(), losses.rend()));
-    EXPECT_EQ(losses.back(), fit.loss);
+    std::vector<double> done;
+    optimise_separable(shape, low_rank(shape, 2), {0.5, 0.3}, [&](double part) { done.push_back(part); });
+    ASSERT_FALSE(done.empty());
+    EXPECT_GT(done.front(), 0);
+    EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+    EXPECT_EQ(done.back(), 1);
 }
 
 TEST(OptimiseSeparable, RefusesWhatHasNoLoss) {
