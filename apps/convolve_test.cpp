@@ -31,7 +31,7 @@ TEST(Convolve, RunsTermsAsTheFileHasThem) {
         ASSERT_TRUE(succeeds(run)) << method;
         const nlohmann::json report = run.json();
         EXPECT_EQ(report["weights"]["width"], 3);
-        EXPECT_EQ(report["method"], method == " --fft" ? "fft" : method == " --rank 2" ? report["method"] : "direct");
+        EXPECT_EQ(report["method"], method == " --fft" ? "fft" : "direct");
         const Image<float> out = load<float>(shell / "out.exr");
         for (int y = 0; y < 3; ++y)
             for (int x = 0; x < 3; ++x)  // a light becomes the weights, turned by half a turn; divided by their sum
@@ -135,14 +135,14 @@ TEST(Bokeh, ApproximationsAreNearAndSayWhatTheyAre) {
     };
     EXPECT_LT(difference(blurred("").first), 1e-5);
     EXPECT_LT(difference(blurred("--fft").first), 1e-5);
-    const auto [eight, rank] = blurred("--rank 6");
-    EXPECT_EQ(rank["rank"], 6);
-    EXPECT_LT(difference(eight), 0.1);
+    const auto [products, rank] = blurred("--rank 4");
+    EXPECT_EQ(rank["rank"], 4);
+    EXPECT_LT(difference(products), 0.3);
     const auto [phasors, components] = blurred("--components 2");
     EXPECT_EQ(components["components"], 2);
     EXPECT_EQ(components["rank"], 4);
     EXPECT_LT(difference(phasors), 0.7);  // at the edge of the disc, which phasors soften
-    EXPECT_GT(difference(phasors), difference(eight));
+    EXPECT_GT(difference(phasors), difference(products));
     // Raised, the light outshines what surrounds it.
     EXPECT_GT(blurred("--hdr 7").first.view()(20, 20), 5 * exact.view()(20, 20));
 }

@@ -57,10 +57,10 @@ Design make(const Options& o) {
     design.file.cost = 2 * std::ceil(2 * kernel.radius);
     design.file.multiply_adds = design.file.cost;
     design.intermediates = 1;
-    design.lines = {fmt::format("kernel        radius {:.6g}, degree {}, smoothness {}{}, to {}",
-                                kernel.radius, o.options.degree, o.options.smoothness,
-                                o.options.interpolating ? ", interpolating" : "", o.use),
-                    "pieces        coefficients of powers of |x| - begin, the constant first"};
+    design.lines = {
+        fmt::format("kernel        radius {:.6g}, degree {}, smoothness {}{}, to {}", kernel.radius, o.options.degree,
+                    o.options.smoothness, o.options.interpolating ? ", interpolating" : "", o.use),
+        "pieces        coefficients of powers of |x| - begin, the constant first"};
     for (const KernelPiece& piece : o.fit.pieces) design.lines.push_back(piece_line(piece));
     design.lines.push_back(
         fmt::format("error         {:.6g}, the square of what is wrong below f = 8, in parts of the target's; with the "

@@ -32,13 +32,16 @@ std::string line_of(const MethodCost& cost, const WeightGrid& grid) {
                        name_of(cost.method), terms, cost.multiply_adds);
 }
 
-nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWeights& chosen, const WeightGrid& grid,
-                                 double sum, Edge edge) {
+nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWeights& chosen,
+                                 const ConvolutionWeights& weights, const WeightGrid& grid, double sum, Edge edge) {
     const MethodCost& cost = convolution.chosen();
+    // Few products may run directly all the same, where that is cheaper.
+    const auto* terms = std::get_if<Terms>(&weights.weights);
+    const int rank = terms ? static_cast<int>(terms->size()) : cost.rank;
     nlohmann::ordered_json report{{"weights", {{"of", chosen.name}, {"width", grid.width}, {"height", grid.height}}},
                                   {"sum", sum},
                                   {"method", name_of(cost.method)},
-                                  {"rank", cost.rank > 0 ? nlohmann::ordered_json(cost.rank) : nullptr},
+                                  {"rank", rank > 0 ? nlohmann::ordered_json(rank) : nullptr},
                                   {"multiply_adds", cost.multiply_adds}};
     if (chosen.components > 0) report["components"] = chosen.components;
     if (chosen.gamma != 1) report["hdr"] = chosen.gamma;
@@ -132,7 +135,7 @@ PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, 
     };
     filter.memory = convolution->bytes(in.channels(), o.parallel);
     filter.line = line_of(convolution->chosen(), grid);
-    filter.report = report_of(*convolution, chosen, grid, choice.keeps_sum ? sum : 1, options.edge_x);
+    filter.report = report_of(*convolution, chosen, weights, grid, choice.keeps_sum ? sum : 1, options.edge_x);
     return filter;
 }
 
