@@ -42,7 +42,8 @@ const WeightGrid& grid() {
 }
 
 const Terms& pair_of_terms() {
-    static const Terms terms{{{0.1, 0.5, 0.4}, {0.3, 0.2, 0.1, 0.4, -0.1}}, {{-0.2, 0.6, 0.1}, {0.5, -0.3, 0.2, 0.1, 0.3}}};
+    static const Terms terms{{{0.1, 0.5, 0.4}, {0.3, 0.2, 0.1, 0.4, -0.1}},
+                             {{-0.2, 0.6, 0.1}, {0.5, -0.3, 0.2, 0.1, 0.3}}};
     return terms;
 }
 
@@ -84,7 +85,8 @@ Fetches along(const std::vector<double>& weights, bool x) {
 /// The texels within 3 of (x, y), weighted by `weight` of their distances and normalised.
 Expected weighted(const Place& at, const std::function<double(double, double)>& weight) {
     const Axis across{at.source.width, 0, double(at.source.width)}, down{at.source.height, 0, double(at.source.height)};
-    const int i0 = static_cast<int>(std::floor(across.index(at.x))), j0 = static_cast<int>(std::floor(down.index(at.y)));
+    const int i0 = static_cast<int>(std::floor(across.index(at.x))),
+              j0 = static_cast<int>(std::floor(down.index(at.y)));
     Colour sum{};
     double total = 0, absolute = 0;
     for (int j = j0 - 3; j <= j0 + 4; ++j)
@@ -185,7 +187,8 @@ std::vector<Case> make_cases() {
     columns("phasor_columns", phasor_terms());
     cases.push_back({"grid", "grid(source, uv, texel)", loaded});
     for (const KernelShader& s : kernel_shaders()) {
-        if (s.kernel.empty() || s.name == "sample_catmull_rom_5" || s.name == "sample_bspline_1d" || s.name == "sample_jinc2")
+        if (s.kernel.empty() || s.name == "sample_catmull_rom_5" || s.name == "sample_bspline_1d" ||
+            s.name == "sample_jinc2")
             continue;
         const Kernel k = parse_kernel(s.kernel);
         kernel(std::string(s.name).c_str(), [k](const Place& at) { return separable(at, k); });
@@ -203,8 +206,8 @@ std::vector<Case> make_cases() {
     cases.push_back({"linear_from_srgb", "linear_from_srgb(sample(source, source_sampler, uv))",
                      [](const Place& at) { return curved(at, srgb_to_linear, 2.3); }});
     for (Case& c : cases)
-        for (const char* name : {"plain", "few", "line_horizontal", "line_vertical", "pair_rows 1", "pair_columns", "grid",
-                                 "sample_bspline", "sample_jinc2"})
+        for (const char* name : {"plain", "few", "line_horizontal", "line_vertical", "pair_rows 1", "pair_columns",
+                                 "grid", "sample_bspline", "sample_jinc2"})
             c.at_all_edges = c.at_all_edges || c.name == name;
     return cases;
 }

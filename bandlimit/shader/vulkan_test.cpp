@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "bandlimit/color/half.h"
-
 #ifdef BANDLIMIT_TEST_VULKAN
 #include <vulkan/vulkan.h>
 
@@ -79,8 +77,7 @@ void Vulkan::State::open() {
     if (family == count) throw std::runtime_error("no queue for compute");
 
     const float priority = 1;
-    const VkDeviceQueueCreateInfo queues{
-        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
+    const VkDeviceQueueCreateInfo queues{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
     VkDeviceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
     info.queueCreateInfoCount = 1;
@@ -120,12 +117,6 @@ struct Texture {
 
 constexpr VkImageSubresourceLayers colour_layer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-std::vector<std::uint16_t> halves_of(const Picture& picture) {
-    std::vector<std::uint16_t> out;
-    for (const float v : picture.texels) out.push_back(to_half(v).bits);
-    return out;
-}
-
 }  // namespace
 
 /// One run: everything that is made for it, and undone after it.
@@ -136,8 +127,8 @@ public:
     std::vector<float> operator()(const std::vector<std::uint32_t>& spirv) {
         begin();
         for (const Picture* p : d_.textures) inputs_.push_back(upload(*p));
-        result_ = texture(d_.width, d_.height, result_format(),
-                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+        result_ =
+            texture(d_.width, d_.height, result_format(), VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
         barrier(result_.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
         bind(spirv);
         vkCmdDispatch(commands_, static_cast<std::uint32_t>(d_.groups_x), static_cast<std::uint32_t>(d_.groups_y), 1);
@@ -155,8 +146,8 @@ private:
         VkCommandPool pool = VK_NULL_HANDLE;
         require(vkCreateCommandPool(s_.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
         later([this, pool] { vkDestroyCommandPool(s_.device, pool, nullptr); });
-        const VkCommandBufferAllocateInfo info{
-            VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+        const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
         require(vkAllocateCommandBuffers(s_.device, &info, &commands_), "vkAllocateCommandBuffers");
         const VkCommandBufferBeginInfo once{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                             VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
@@ -173,8 +164,8 @@ private:
         later([this, h = b.handle] { vkDestroyBuffer(s_.device, h, nullptr); });
         VkMemoryRequirements needs{};
         vkGetBufferMemoryRequirements(s_.device, b.handle, &needs);
-        const VkDeviceMemory memory = s_.allocate(
-            needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, cleanup_);
+        const VkDeviceMemory memory =
+            s_.allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, cleanup_);
         require(vkBindBufferMemory(s_.device, b.handle, memory, 0), "vkBindBufferMemory");
         require(vkMapMemory(s_.device, memory, 0, size, 0, &b.data), "vkMapMemory");
         return b;
@@ -221,7 +212,7 @@ private:
     }
 
     Texture upload(const Picture& picture) {
-        const std::vector<std::uint16_t> halves = halves_of(picture);
+        const std::vector<Half> halves = halves_of(picture);
         const Buffer staging = buffer(halves.size() * 2, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
         std::memcpy(staging.data, halves.data(), halves.size() * 2);
         const Texture t = texture(picture.width, picture.height, VK_FORMAT_R16G16B16A16_SFLOAT,
@@ -234,9 +225,9 @@ private:
     }
 
     static VkBufferImageCopy whole(int width, int height) {
-        return {0,           0,
-                0,           colour_layer,
-                {0, 0, 0},   {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1}};
+        return {0,         0,
+                0,         colour_layer,
+                {0, 0, 0}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1}};
     }
 
     VkSampler sampler() {
@@ -292,8 +283,8 @@ private:
         VkDescriptorPool pool = VK_NULL_HANDLE;
         require(vkCreateDescriptorPool(s_.device, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
         later([this, pool] { vkDestroyDescriptorPool(s_.device, pool, nullptr); });
-        const VkDescriptorSetAllocateInfo allocate{
-            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1, &layout};
+        const VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1,
+                                                   &layout};
         VkDescriptorSet set = VK_NULL_HANDLE;
         require(vkAllocateDescriptorSets(s_.device, &allocate, &set), "vkAllocateDescriptorSets");
         for (const Binding& b : all) {
@@ -356,9 +347,9 @@ private:
             const auto* values = static_cast<const float*>(staging.data);
             return {values, values + samples};
         }
-        const auto* halves = static_cast<const std::uint16_t*>(staging.data);
+        const auto* halves = static_cast<const Half*>(staging.data);
         std::vector<float> out;
-        for (std::size_t i = 0; i < samples; ++i) out.push_back(to_float(Half{halves[i]}));
+        for (std::size_t i = 0; i < samples; ++i) out.push_back(to_float(halves[i]));
         return out;
     }
 

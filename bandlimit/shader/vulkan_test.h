@@ -15,9 +15,9 @@ struct Dispatch {
     bool combined = false;  ///< textures and sampler are one, as in GLSL, and there is no binding 1
     Edge edge = Edge::clamp;
     std::vector<const Picture*> textures = {};
-    int width = 0, height = 0;            ///< of the result
-    int groups_x = 0, groups_y = 0;       ///< workgroups
-    bool half_result = false;             ///< the result is rgba16f, else rgba32f
+    int width = 0, height = 0;       ///< of the result
+    int groups_x = 0, groups_y = 0;  ///< workgroups
+    bool half_result = false;        ///< the result is rgba16f, else rgba32f
 };
 
 /// A device and what belongs to it. All failures of Vulkan throw std::runtime_error.
