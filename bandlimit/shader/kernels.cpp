@@ -215,7 +215,7 @@ std::string sine_over(const std::string& variable) {
     return text;
 }
 
-constexpr int jinc_intervals = 128;
+constexpr int jinc_intervals = 256;
 
 /// The kernel over the squared distance, from 0 to the square of its radius, and two zeros at the end.
 std::string jinc2_source() {

@@ -152,15 +152,15 @@ TEST(KernelShaders, AreKernelsWithNamesOfTheirOwn) {
 TEST(KernelShaders, TheTableOfJincIsFineEnough) {
     const Kernel kernel = jinc_lanczos(2);
     const double end = kernel.radius * kernel.radius;
-    const auto at = [&](int i) { return i >= 128 ? 0 : kernel.value(std::sqrt(end * i / 128)); };
+    const auto at = [&](int i) { return i >= 256 ? 0 : kernel.value(std::sqrt(end * i / 256)); };
     double worst = 0;
-    for (int i = 0; i < 12800; ++i) {
+    for (int i = 0; i < 25600; ++i) {
         const double place = i / 100.0;
         const int k = i / 100;
         const double line = at(k) + (place - k) * (at(k + 1) - at(k));
-        worst = std::max(worst, std::abs(line - kernel.value(std::sqrt(end * place / 128))));
+        worst = std::max(worst, std::abs(line - kernel.value(std::sqrt(end * place / 256))));
     }
-    EXPECT_LE(worst, 2e-4 * kernel.value(0));
+    EXPECT_LE(worst, 1e-4 * kernel.value(0));
     RecordProperty("error", std::to_string(worst / kernel.value(0)));
 }
 
