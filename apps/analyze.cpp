@@ -10,6 +10,7 @@
 #include "apps/plot.h"
 #include "bandlimit/analysis/kernel_spectrum.h"
 #include "bandlimit/analysis/response.h"
+#include "bandlimit/design/downsample.h"
 #include "bandlimit/io/taps_json.h"
 #include "bandlimit/kernel/kernel.h"
 #include "bandlimit/resample/bank.h"
@@ -40,10 +41,11 @@ struct ResponseAt {
 struct PhaseReport {
     double phase = 0;
     int first = 0;
-    std::optional<int> first_y;                ///< of radial kernels, whose weights have rows
-    std::vector<std::vector<double>> weights;  ///< one row, or those of a radial kernel
+    std::optional<int> first_y;                ///< of radial kernels and of fetches, whose weights have rows
+    std::vector<std::vector<double>> weights;  ///< one row, or all of them
     double sum = 1, variance = 0, centroid = 0;
-    std::vector<ResponseAt> responses;
+    std::vector<ResponseAt> responses;  ///< along x
+    std::vector<ResponseAt> diagonal;   ///< of fetches: H(f, f)
 };
 
 struct RowReport {
@@ -114,11 +116,7 @@ void check(const Options& o) {
         throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
     if (!o.at.empty()) parse_numbers("--at", o.at);
     phases_of(o), frequencies_of(o), rows_of(o);
-    if (o.is_taps_file()) {
-        if (!o.phase.empty() || !o.at.empty())
-            throw UsageError(
-                "analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
-    } else if (is_radial(parse_kernel(o.kernel)) && o.to) {
+    if (!o.is_taps_file() && is_radial(parse_kernel(o.kernel)) && o.to) {
         throw UsageError(
             fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
     }
@@ -128,10 +126,15 @@ void check(const Options& o) {
 // ---- Measuring
 // -------------------------------------------------------------------------------------------------------
 
+/// Where the output of `file` lies, right of input sample i * factor.
+double phase_of(const TapsFile& file) {
+    return file.kind == "upsample" ? output_texel({.upsample = true}) : output_offset({0, {}, file.factor});
+}
+
 PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, const std::vector<double>& frequencies) {
     const PlacedWeights placed(taps, phase);
     PhaseReport report{phase, taps.first, {}, {taps.weights}, sum_before, variance(placed), centroid(placed) + phase,
-                       {}};
+                       {},    {}};
     for (const double f : frequencies) report.responses.push_back({f, response(placed, f)});
     return report;
 }
@@ -139,7 +142,7 @@ PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, c
 PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<double>& frequencies) {
     const RadialWeights radial = radial_weights_at(kernel, phase, 0);
     const PlacedWeights2D placed(radial, phase, 0);
-    PhaseReport report{phase, radial.first_x, radial.first_y, {}, radial.sum, variance(placed), 0, {}};
+    PhaseReport report{phase, radial.first_x, radial.first_y, {}, radial.sum, variance(placed), 0, {}, {}};
     for (int y = 0; y < radial.height; ++y) {
         const auto row = radial.weights.begin() + static_cast<std::ptrdiff_t>(y) * radial.width;
         report.weights.emplace_back(row, row + radial.width);
@@ -149,10 +152,31 @@ PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<d
     return report;
 }
 
+PhaseReport fetches_phase(const TapsFile& file, const std::vector<double>& frequencies) {
+    const double phase = phase_of(file);
+    const PlacedWeights2D placed = weights_of(file.fetches, phase);
+    const auto first = [phase](double at) { return static_cast<int>(std::lround(at + phase)); };
+    PhaseReport report{phase, first(placed.first_x), first(placed.first_y), {}, 0, variance(placed), 0, {}, {}};
+    double moment = 0;
+    for (auto at = placed.weights.begin(); at != placed.weights.end(); at += placed.width) {
+        report.weights.emplace_back(at, at + placed.width);
+        for (int x = 0; x < placed.width; ++x) {
+            report.sum += at[x];
+            moment += (report.first + x) * at[x];
+        }
+    }
+    report.centroid = moment / report.sum;
+    for (const double f : frequencies) {
+        report.responses.push_back({f, response(placed, f, 0)});
+        report.diagonal.push_back({f, response(placed, f, f)});
+    }
+    return report;
+}
+
 PhaseReport phase_report(const Subject& subject, double phase, const std::vector<double>& frequencies) {
     if (const auto* file = std::get_if<TapsFile>(&subject)) {
-        const double total = sum(*file->taps);
-        return separable_phase(*file->taps, total, output_offset(*file->taps), frequencies);
+        if (!file->taps) return fetches_phase(*file, frequencies);
+        return separable_phase(*file->taps, sum(*file->taps), phase_of(*file), frequencies);
     }
     const Kernel& kernel = std::get<Kernel>(subject);
     if (is_radial(kernel)) return radial_phase(kernel, phase, frequencies);
@@ -167,7 +191,7 @@ Bank bank_of(const Options& o, const Subject& subject) {
                        fmt::format("the bank from {} to {} samples", *o.from, *o.to));
         return make_bank(*kernel, src, dst, Edge::renormalize);
     }
-    const Taps& taps = *std::get<TapsFile>(subject).taps;
+    const Taps& taps = taps_of(std::get<TapsFile>(subject), o.kernel);
     const int outputs = std::max(1, *o.from / taps.factor);
     if (*o.to != outputs)
         throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}; pass --to {}", o.kernel,
@@ -188,6 +212,7 @@ Report analyze(const Options& o, const Subject& subject) {
         for (const double p : phases_of(o)) report.phases.push_back(phase_report(subject, p, frequencies));
     } else {
         report.name = o.kernel;
+        report.separable = std::get<TapsFile>(subject).taps.has_value();
         report.phases.push_back(phase_report(subject, 0, frequencies));
     }
     if (!o.to) return report;
@@ -202,17 +227,22 @@ Report analyze(const Options& o, const Subject& subject) {
 // ---- Printing
 // --------------------------------------------------------------------------------------------------------
 
+ordered_json to_json(const std::vector<ResponseAt>& responses) {
+    ordered_json list = ordered_json::array();
+    for (const auto& [f, h] : responses)
+        list.push_back({{"f", f}, {"re", h.real()}, {"im", h.imag()}, {"gain", std::abs(h)}});
+    return list;
+}
+
 ordered_json to_json(const PhaseReport& p) {
-    ordered_json responses = ordered_json::array();
-    for (const auto& [f, h] : p.responses)
-        responses.push_back({{"f", f}, {"re", h.real()}, {"im", h.imag()}, {"gain", std::abs(h)}});
     ordered_json out{{"phase", p.phase}, {"first", p.first}};
     if (p.first_y) out["first_y"] = *p.first_y;
     out["weights"] = p.first_y ? ordered_json(p.weights) : ordered_json(p.weights.front());
     out["sum"] = p.sum;
     out["variance"] = p.variance;
     out["centroid"] = p.centroid;
-    out["response"] = responses;
+    out["response"] = to_json(p.responses);
+    if (!p.diagonal.empty()) out["response_diagonal"] = to_json(p.diagonal);
     return out;
 }
 
@@ -254,6 +284,9 @@ void print_gains(const Report& r) {
         line.clear();
         for (const ResponseAt& at : p.responses) line.push_back(std::abs(at.h));
         fmt::print("{:<14}{}\n", fmt::format("phase {:.4g}", p.phase), cells(line));
+        line.clear();
+        for (const ResponseAt& at : p.diagonal) line.push_back(std::abs(at.h));
+        if (!line.empty()) fmt::print("{:<14}{}\n", "at (f, f)", cells(line));
     }
     if (r.profile.empty()) return;
     line.clear();
@@ -295,7 +328,16 @@ Panel shape_panel(const Subject& subject) {
         panel.series = {curve("", -reach, reach, 800, kernel->value)};
         return panel;
     }
-    const PlacedWeights placed(*std::get<TapsFile>(subject).taps);
+    const TapsFile& file = std::get<TapsFile>(subject);
+    if (!file.taps) {
+        panel = {"fetches", "x (source texels from the output)", "y", {{"", {}, {}, Series::Style::points}}};
+        for (const Fetch& f : file.fetches) {
+            panel.series.front().x.push_back(f.x);
+            panel.series.front().y.push_back(f.y);
+        }
+        return panel;
+    }
+    const PlacedWeights placed(*file.taps, phase_of(file));
     panel.title = "taps";
     panel.series = {stems("", placed.first, placed.weights)};
     return panel;
@@ -306,13 +348,21 @@ Panel response_panel(const Report& r, const Subject& subject) {
     std::vector<double> frequencies;
     for (int i = 0; i <= steps; ++i) frequencies.push_back(0.5 * i / steps);
     Panel panel{"response", "frequency (cycles per source sample)", "gain", {}};
-    for (const PhaseReport& p : r.phases) {
-        Series series{r.phases.size() > 1 ? fmt::format("phase {:.3g}", p.phase) : "", {}, {}, Series::Style::line};
-        for (const auto& [f, h] : phase_report(subject, p.phase, frequencies).responses) {
+    const auto add = [&](const std::string& label, const std::vector<ResponseAt>& responses) {
+        Series series{label, {}, {}, Series::Style::line};
+        for (const auto& [f, h] : responses) {
             series.x.push_back(f);
             series.y.push_back(std::abs(h));
         }
         panel.series.push_back(std::move(series));
+    };
+    for (const PhaseReport& p : r.phases) {
+        const PhaseReport fine = phase_report(subject, p.phase, frequencies);
+        add(r.phases.size() > 1     ? fmt::format("phase {:.3g}", p.phase)
+            : fine.diagonal.empty() ? ""
+                                    : "(f, 0)",
+            fine.responses);
+        if (!fine.diagonal.empty()) add("(f, f)", fine.diagonal);
     }
     return panel;
 }
@@ -328,17 +378,20 @@ void plot(const Options& o, const Report& r, const Subject& subject) {
     draw(panels, o.plot, 400 * static_cast<int>(panels.size()), 360);
 }
 
+Subject read_subject(const Options& o) {
+    if (!o.is_taps_file()) return parse_kernel(o.kernel);
+    TapsFile file = read_taps(o.kernel);
+    if (is_kernel(file)) return kernel_of(file, o.kernel);
+    if (file.fetches.empty()) taps_of(file, o.kernel);
+    if (!o.phase.empty() || !o.at.empty())
+        throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
+    return file;
+}
+
 void run(const Options& o) {
     if (o.list) return print_list(o.json);
     if (!o.plot.empty()) check_output_path(o.plot);
-    Subject subject;
-    if (o.is_taps_file()) {
-        TapsFile file = read_taps(o.kernel);
-        taps_of(file, o.kernel);
-        subject = std::move(file);
-    } else {
-        subject = parse_kernel(o.kernel);
-    }
+    const Subject subject = read_subject(o);
     const Report report = analyze(o, subject);
     if (!o.plot.empty()) plot(o, report, subject);
     if (o.json) print_json(to_json(report));

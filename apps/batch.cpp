@@ -41,13 +41,13 @@ struct Item {
 };
 
 bool is_picture(const fs::path& path) {
-    constexpr std::array<std::string_view, 20> extensions{".png", ".jpg",  ".jpeg", ".jpe", ".tif", ".tiff",
+    constexpr std::array<std::string_view, 16> extensions{".png", ".jpg",  ".jpeg", ".jpe", ".tif", ".tiff",
                                                           ".exr", ".hdr",  ".rgbe", ".ppm", ".pgm", ".pnm",
                                                           ".pfm", ".webp", ".tga",  ".bmp"};
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return !extension.empty() && std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
@@ -58,10 +58,13 @@ std::vector<std::string> pictures_below(const fs::path& root, const fs::path& ou
     try {
         for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator();
              ++entry) {
-            std::error_code ignored;
-            const bool is_passed = is_hidden(*entry) || (entry->is_directory() && fs::equivalent(*entry, out, ignored));
-            if (is_passed && entry->is_directory()) entry.disable_recursion_pending();
-            if (!is_passed && is_picture(*entry) && entry->is_regular_file(ignored))
+            std::error_code ignored;  // of links that lead nowhere, or in circles
+            const bool is_folder = entry->is_directory(ignored);
+            const bool is_passed = is_hidden(*entry) || (is_folder && fs::equivalent(*entry, out, ignored));
+            if (is_passed && is_folder) entry.disable_recursion_pending();
+            // Links that lead nowhere are listed with what fails.
+            const bool is_file = entry->is_regular_file(ignored) || (entry->is_symlink(ignored) && !is_folder);
+            if (!is_passed && is_picture(*entry) && is_file)
                 pictures.push_back(entry->path().lexically_relative(root).generic_string());
         }
     } catch (const fs::filesystem_error& e) {

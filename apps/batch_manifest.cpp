@@ -50,7 +50,8 @@ std::string hash_of_file(const std::string& path) {
 }
 
 Manifest::Manifest(const std::string& directory) : directory_(directory) {
-    std::ifstream file(fs::path(directory) / manifest_name);
+    const fs::path path = fs::path(directory) / manifest_name;
+    std::ifstream file(path);
     if (!file) return;
     try {
         const json root = json::parse(file);
@@ -58,6 +59,8 @@ Manifest::Manifest(const std::string& directory) : directory_(directory) {
         for (const auto& [output, entry] : root.at("outputs").items()) made_[output] = made_of(entry);
     } catch (const json::exception&) {
         made_.clear();
+    } catch (const std::ios_base::failure&) {  // of a directory, or a disk
+        fail_file(path.string(), "cannot be read; remove it, and all textures are made anew");
     }
 }
 

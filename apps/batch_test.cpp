@@ -88,6 +88,28 @@ TEST(Batch, MakesWhatIsNotUpToDateAndGoesOnAfterFailures) {
     EXPECT_EQ(files_below(shell / "in/out"), made);
 }
 
+TEST(Batch, LinksThatLeadNowhereFailAlone) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    save_noise(shell / "in/a.png");
+    fs::create_symlink("circle.png", shell / "in/circle.png");
+    fs::create_symlink("gone.png", shell / "in/lost.png");
+    fs::create_symlink("a.png", shell / "in/b.png");
+    fs::create_directory_symlink(".", shell / "in/again");
+    const Outcome run = shell("mips --batch in out --json");
+    EXPECT_EQ(run.code, 1) << run;
+    EXPECT_EQ(run.json()["made"], 2);
+    EXPECT_EQ(failed_in(run.json()), (std::set<std::string>{"circle.png", "lost.png"}));
+    EXPECT_EQ(files_below(shell / "out"), (std::set<std::string>{manifest_name, "a.ktx2", "b.ktx2"}));
+}
+
+TEST(Batch, AManifestThatIsADirectoryIsNamed) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    save_noise(shell / "in/a.png");
+    fs::create_directories(shell / ("out/" + std::string(manifest_name)));
+    EXPECT_TRUE(fails(1, shell("mips --batch in out"), manifest_name));
+    EXPECT_TRUE(files_below(shell / "out").empty());
+}
+
 TEST(Batch, RulesDecideByTheFirstThatFits) {
     const Shell shell(BANDLIMIT_PROGRAM);
     for (const std::string name : {"a_n.png", "sub/b_n.png", "sub/c.png", "sources/a.png", "sources/x/b.png",

@@ -7,7 +7,7 @@
 namespace bandlimit {
 namespace {
 
-const std::array verbs{"resize", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
+const std::array verbs{"resize", "convolve", "bokeh", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
 const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
                        "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
 

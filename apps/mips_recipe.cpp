@@ -74,17 +74,19 @@ MipFilter filter_of(const MipsRecipe& recipe) {
     if (name == "downsample8") return downsample8();
     if (!is_taps_file(name)) return parse_kernel(name);
     const TapsFile file = read_taps(name);
+    if (is_kernel(file)) return kernel_of(file, name);
     if (file.factor != 2)
         throw UsageError(fmt::format(
             "--filter {}: its taps are made for a factor of {}, and every level halves; give taps of factor 2", name,
             file.factor));
+    if (!file.taps && !file.fetches.empty()) return file.fetches;
     return taps_of(file, name);
 }
 
 std::string name_of(const MipFilter& filter, int length) {
     if (const Kernel* kernel = std::get_if<Kernel>(&filter)) return kernel->name;
     if (std::holds_alternative<Taps>(filter)) return "taps";
-    if (std::holds_alternative<Fetches>(filter)) return "downsample8";
+    if (const Fetches* fetches = std::get_if<Fetches>(&filter)) return fmt::format("{} fetches", fetches->size());
     return auto_kernel({length, 0, 1}, {mip_length(length, 1), 0, 1}).name;
 }
 

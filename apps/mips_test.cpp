@@ -76,6 +76,33 @@ TEST(Mips, TheLevelsAreThoseOfTheLibraryInEveryKindOfFile) {
     EXPECT_EQ(report["role_from"], "option");
 }
 
+TEST(Mips, BandsOfRowsAndThreadsDoNotChangeATexel) {
+    // Several bands of every one of the larger levels, for any number of threads; bands of a PNG are read in order,
+    // those of tiles anywhere. Under Edge::wrap all rows are in memory.
+    const Shell shell(BANDLIMIT_PROGRAM);
+    constexpr int width = 19, height = 3001;
+    AnyImage image = noise(Depth::u8, width, height, 4);
+    save(shell / "in.png", image);
+    ImageTarget target = target_of(Depth::u8, width, height, 4);
+    target.tile = 48;
+    write_image(shell / "in.tif", target, pixels(image));
+    const TexelFormat format{.channels = 4, .depth = Depth::u8, .srgb = true};
+    for (const std::string edge : {"renormalize", "wrap"}) {
+        const Edge by_y = parse_edge(edge);
+        const MipChain chain =
+            make_mips(pixels(image), {Transfer::srgb, 3}, format, {.edge_x = Edge::clamp, .edge_y = by_y});
+        for (const std::string files :
+             {"in.png out.ktx2 --threads 1", "in.png out.dds --threads 3", "in.tif out.ktx2 --threads 2"}) {
+            ASSERT_TRUE(succeeds(shell("mips --quiet --role color --edge clamp," + edge + " " + files)));
+            const Texture made = texture_in(shell / files.substr(7, files.find(' ', 7) - 7));
+            ASSERT_EQ(made.levels.size(), chain.images.size());
+            for (int level = 0; level < static_cast<int>(chain.images.size()); ++level)
+                EXPECT_TRUE(equal(samples(made.image(level)), samples(chain.images[static_cast<std::size_t>(level)])))
+                    << files << ", edge " << edge << ", level " << level;
+        }
+    }
+}
+
 TEST(Mips, TexelsAreWhatPictureAndRoleNeed) {
     const Shell shell(BANDLIMIT_PROGRAM);
     AnyImage grey = noise(Depth::u8, 8, 8, 1), grey_alpha = noise(Depth::u8, 8, 8, 2), rgb = noise(Depth::u8, 8, 8, 3),

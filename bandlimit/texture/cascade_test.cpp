@@ -93,6 +93,33 @@ TEST(MipCascade, HasTheBitsOfWholeLevelsOneAfterAnother) {
             }
 }
 
+TEST(MipCascade, KeepsNoRowsWhereTheKernelSkipsThem) {
+    // Of two rows nearest reads one: the next that a level needs may lie below all that are made.
+    ResizeOptions options;
+    options.reconstruction = nearest();
+    for (const int height : {777, 5000})
+        for (const int threads : {1, 3}) {
+            const Image<std::uint8_t> base = codes(3, height, 1);
+            const int count = mip_count(3, height);
+            const Levels whole = by_levels(base, {}, count, options);
+            const Levels pieces = by_cascade(base, {}, count, options, {threads});
+            for (std::size_t l = 0; l < whole.size(); ++l)
+                EXPECT_TRUE(same_bits(whole[l], pieces[l])) << height << " rows, level " << l + 1;
+        }
+}
+
+TEST(MipCascade, KeepsAlphaMultipliedWhereItComesSo) {
+    const Image<std::uint8_t> base = codes(5, 300, 4);
+    const Encoding stored{Transfer::linear, 3, true};
+    for (const bool premultiply : {true, false}) {
+        ResizeOptions options;
+        options.premultiply = premultiply;
+        const Levels whole = by_levels(base, stored, 5, options);
+        const Levels pieces = by_cascade(base, stored, 5, options, {1});
+        for (std::size_t l = 0; l < whole.size(); ++l) EXPECT_TRUE(same_bits(whole[l], pieces[l])) << "level " << l + 1;
+    }
+}
+
 TEST(MipCascade, StopsAtTheLevelsAskedFor) {
     const Image<std::uint8_t> base = codes(16, 16, 1);
     EXPECT_EQ(by_cascade(base, {}, 3, {}, {}).size(), 2u);

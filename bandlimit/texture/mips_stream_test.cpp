@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <vector>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/math/random.h"
@@ -93,6 +95,43 @@ TEST(MipStream, StoresAllOfLevelZeroWhereTheKernelSkipsRows) {
     const std::vector<AnyImage> only_base = streamed(base, {}, unorm8, options);
     ASSERT_EQ(only_base.size(), 1u);
     EXPECT_EQ(std::memcmp(bytes_of(only_base[0]).data(), base.view().data, bytes_of(only_base[0]).size()), 0);
+}
+
+TEST(MipStream, TellsWhichLevelsLoseWhatIsNotFinite) {
+    // NaN in level 0; and a step between the largest floats, over which the sums of level 1 alone shoot.
+    MipOptions options;
+    options.role = Role::data, options.filter = lanczos(3);
+    const auto loses = [&](const Image<float>& base, int levels) {
+        options.levels = levels;
+        return make_mips(base.view(), {}, {.channels = 1, .depth = Depth::u8}, options).lost_non_finite;
+    };
+    Image<float> step(32, 1), nan(32, 1);
+    for (int x = 0; x < 32; ++x)
+        step.view()(x, 0) = std::numeric_limits<float>::max() * (x < 16 ? -1.0f : 1.0f), nan.view()(x, 0) = 0.5f;
+    nan.view()(31, 0) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_TRUE(loses(nan, 1));
+    EXPECT_FALSE(loses(step, 1));
+    EXPECT_TRUE(loses(step, 2));
+}
+
+TEST(MipStream, RefusesRowsThatDoNotHoldWhatIsNeeded) {
+    const Image<std::uint8_t> base = codes(4, 1000, 4);
+    MipStream stream(4, 1000, 4, Depth::u8, {}, unorm8, {.role = Role::data}, {1});
+    AnyImage block;
+    const MipStream::Sink nowhere{[&](int level, int, int count) {
+                                      block = make_image(Depth::u8, mip_length(4, level), count, 4);
+                                      return view_of(block);
+                                  },
+                                  [](int, int, const AnyView&) {}};
+    const auto rows = [&](int begin, int end) { return cropped(base.view(), 0, begin, 4, end - begin); };
+    for (int step = 0; step < stream.steps(); ++step) {
+        const IndexRange needed = stream.rows_needed(step);
+        EXPECT_THROW(stream.advance(rows(needed.begin + 1, needed.end), needed.begin + 1, nowhere), Error);
+        EXPECT_THROW(stream.advance(rows(needed.begin, needed.end - 1), needed.begin, nowhere), Error);
+        stream.advance(rows(needed.begin, needed.end), needed.begin, nowhere);
+    }
+    EXPECT_GT(stream.steps(), 2);
+    EXPECT_THROW(stream.advance(base.view(), 0, nowhere), Error);
 }
 
 TEST(MipStream, RefusesWhatNeedsWholeLevels) {

@@ -1,10 +1,11 @@
-#include "bandlimit/texture/fetches.h"
+#include "bandlimit/resample/term_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/resample/fetch_banks.h"
 #include "bandlimit/texture/pictures_test.h"
 
 namespace bandlimit {
@@ -37,7 +38,8 @@ double shaded(const Fetches& fetches, const Image<float>& image, int x, int y, i
 Image<float> filtered(const Fetches& fetches, const Image<float>& image, int width, int height, Edge edge) {
     const Grid src{{image.width()}, {image.height()}}, dst{{width}, {height}};
     Image<float> out(width, height, 1, Layout::interleaved);
-    TermFilter(fetches, src, dst, edge, edge, false).run({image.view(), 0, {}}, {out.view(), 0, {}, {}}, {});
+    TermFilter(bank_terms(fetches, src, dst, edge, edge), false)
+        .run({image.view(), 0, {}}, {out.view(), 0, {}, {}}, {});
     return out;
 }
 
