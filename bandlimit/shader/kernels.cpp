@@ -59,7 +59,7 @@ constexpr std::string_view bspline_1d =
 )";
 
 constexpr std::string_view quadratic = R"(
-    // Two reads an axis: t is where uv lies in its texel, from edge to edge.
+    // Two reads an axis, between the nearest texel and those beside it.
     let(float2, position) = uv / texel;
     let(float2, base) = floor(position);
     let(float2, high) = position - base;
