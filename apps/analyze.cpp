@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "apps/common.h"
+#include "apps/emit.h"
 #include "apps/plot.h"
 #include "bandlimit/analysis/kernel_spectrum.h"
 #include "bandlimit/analysis/response.h"
@@ -15,6 +16,7 @@
 #include "bandlimit/kernel/kernel.h"
 #include "bandlimit/resample/bank.h"
 #include "bandlimit/resample/radial.h"
+#include "bandlimit/shader/kernels.h"
 
 namespace bandlimit::app {
 namespace {
@@ -24,6 +26,7 @@ using nlohmann::ordered_json;
 struct Options {
     std::string kernel, at, phase, frequency, rows, plot;
     std::optional<int> from, to;
+    std::optional<Dialect> emit;
     bool list = false, json = false;
 
     bool is_taps_file() const { return kernel.ends_with(".json"); }
@@ -105,11 +108,35 @@ std::vector<int> rows_of(const Options& o) {
     return rows;
 }
 
+/// The shaders that --emit prints: all of a kernel, or the one of that name.
+std::vector<std::string_view> shaders_for(const std::string& name) {
+    const auto known = [](std::string_view n) {
+        return std::ranges::any_of(kernel_shaders(), [&](const KernelShader& s) { return s.name == n; });
+    };
+    if (known(name)) return {std::ranges::find(kernel_shaders(), name, &KernelShader::name)->name};
+    std::vector<std::string_view> names;
+    const std::string kernel = parse_kernel(name).name;
+    for (const KernelShader& s : kernel_shaders())
+        if (s.kernel == kernel) names.push_back(s.name);
+    if (!names.empty()) return names;
+    std::string kernels;
+    for (const KernelShader& s : kernel_shaders())
+        kernels += fmt::format("{}{}", kernels.empty() ? "" : ", ", s.kernel.empty() ? s.name : s.kernel);
+    throw UsageError(fmt::format("--emit: there is no shader of {}; there are shaders of {}", name, kernels));
+}
+
 /// What the command line alone shows to be wrong.
 void check(const Options& o) {
     if (o.list) return;
     if (o.kernel.empty())
         throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
+    if (o.emit && o.json) throw UsageError("analyze: --emit and --json both print to stdout; leave one out");
+    if (o.emit && !o.plot.empty())
+        throw UsageError("analyze: --emit prints a shader and draws nothing; leave out --plot");
+    if (o.emit && !o.is_taps_file()) {
+        shaders_for(o.kernel);
+        return;
+    }
     if (o.from.has_value() != o.to.has_value())
         throw UsageError("analyze: --from and --to belong together; give both or none");
     if (!o.rows.empty() && !o.to)
@@ -388,8 +415,18 @@ Subject read_subject(const Options& o) {
     return file;
 }
 
-void run(const Options& o) {
+void emit(const Options& o, const std::string& command) {
+    if (o.is_taps_file()) {
+        const TapsFile file = read_taps(o.kernel);
+        const std::vector<ShaderFile> files = shaders_of(file, {file.kind, command, {}}, *o.emit);
+        return fmt::print("{}", files.front().text);
+    }
+    for (const std::string_view name : shaders_for(o.kernel)) fmt::print("{}", kernel_shader(name, command, *o.emit));
+}
+
+void run(const Options& o, const std::string& command) {
     if (o.list) return print_list(o.json);
+    if (o.emit) return emit(o, command);
     if (!o.plot.empty()) check_output_path(o.plot);
     const Subject subject = read_subject(o);
     const Report report = analyze(o, subject);
@@ -426,9 +463,14 @@ void add_analyze(Program& program) {
     verb->add_option("--rows", o->rows, "Which outputs; default all")->type_name("I,...");
     verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
         ->type_name("OUT");
+    verb->add_option_function<std::string>(
+            "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
+            "Print shader source instead: functions that read a texture with the kernel, or one of them by its\n"
+            "name, as sample_catmull_rom_5; srgb for the curve; of a taps.json its first shader")
+        ->type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     add_json(verb, o->json);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o, &program] { run(*o, program.command); });
 }
 
 }  // namespace bandlimit::app

@@ -13,5 +13,6 @@ function(bandlimit_shader_tests)
     target_link_libraries(test_shader PRIVATE ${CMAKE_DL_LIBS})
     target_compile_definitions(test_shader PRIVATE
         BANDLIMIT_SHADER_TOOLS="${PROJECT_SOURCE_DIR}/build/shader-tools"
+        BANDLIMIT_SHADER_TESTS="${PROJECT_SOURCE_DIR}/bandlimit/shader"
         BANDLIMIT_CXX="${CMAKE_CXX_COMPILER}")
 endfunction()

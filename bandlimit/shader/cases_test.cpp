@@ -125,13 +125,13 @@ Expected along_axis(const Place& at, const Kernel& kernel, bool x) {
     });
 }
 
-/// The kernel over the squared distance as 128 straight pieces.
+/// The kernel over the squared distance as 256 straight pieces.
 double jinc2_by_table(double squared) {
     static const Kernel kernel = jinc_lanczos(2);
     static const double end = kernel.radius * kernel.radius;
-    const double place = squared / end * 128;
-    if (place >= 128) return 0;
-    const auto at = [](double i) { return i >= 128 ? 0 : kernel.value(std::sqrt(end * i / 128)); };
+    const double place = squared / end * 256;
+    if (place >= 256) return 0;
+    const auto at = [](double i) { return i >= 256 ? 0 : kernel.value(std::sqrt(end * i / 256)); };
     const double i = std::floor(place);
     return at(i) + (place - i) * (at(i + 1) - at(i));
 }

@@ -36,6 +36,9 @@ public:
         constexpr int target_spirv = 6, stage_compute = 6, language_slang = 1, language_hlsl = 2;
         void* request = function<void*(void*)>("spCreateCompileRequest")(session_);
         function<void(void*, int)>("spSetCodeGenTarget")(request, target_spirv);
+        // Registers s0 and u0 as bindings 1 and 2.
+        const char* shifts[] = {"-fvk-t-shift", "0", "0", "-fvk-s-shift", "1", "0", "-fvk-u-shift", "2", "0"};
+        function<int(void*, const char* const*, int)>("spProcessCommandLineArguments")(request, shifts, 9);
         const int language = dialect == Dialect::hlsl ? language_hlsl : language_slang;
         const int unit = function<int(void*, int, const char*)>("spAddTranslationUnit")(request, language, "shader");
         function<void(void*, int, const char*, const char*)>("spAddTranslationUnitSourceString")(

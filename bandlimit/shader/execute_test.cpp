@@ -2,13 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/core/sanitized_test.h"
-#include "bandlimit/resample/apply.h"
 #include "bandlimit/shader/cases_test.h"
 #include "bandlimit/shader/compilers_test.h"
+#include "bandlimit/shader/library_test.h"
+#include "bandlimit/shader/need_test.h"
 #include "bandlimit/shader/shader.h"
 #include "bandlimit/shader/text.h"
 #include "bandlimit/shader/vulkan_test.h"
+#include "bandlimit/shader/wgpu_test.h"
 
 namespace bandlimit::test {
 namespace {
@@ -124,12 +125,6 @@ void expect_right(const std::vector<float>& result, Edge edge, bool only_some, i
     }
 }
 
-#define BANDLIMIT_NEED(reason)                                                                \
-    do {                                                                                      \
-        if (is_sanitized) GTEST_SKIP() << "not under sanitizers: a driver's own";             \
-        if (const std::string missing_ = reason; !missing_.empty()) GTEST_SKIP() << missing_; \
-    } while (false)
-
 void execute_by(Compiler compiler, Dialect dialect) {
     BANDLIMIT_NEED(missing(compiler));
     BANDLIMIT_NEED(Vulkan::missing());
@@ -149,6 +144,39 @@ TEST(Execute, HlslByGlslang) { execute_by(Compiler::glslang, Dialect::hlsl); }
 TEST(Execute, HlslBySlang) { execute_by(Compiler::slang, Dialect::hlsl); }
 TEST(Execute, SlangBySlang) { execute_by(Compiler::slang, Dialect::slang); }
 TEST(Execute, WgslByNaga) { execute_by(Compiler::naga, Dialect::wgsl); }
+
+TEST(Execute, WgslByWgpu) {
+    BANDLIMIT_NEED(missing_wgpu());
+    BANDLIMIT_NEED(Vulkan::missing());
+    std::vector<WgpuJob> jobs;
+    for (const Edge edge : {Edge::clamp, Edge::wrap, Edge::reflect})
+        jobs.push_back({wrapper(Dialect::wgsl, edge != Edge::clamp), bands(edge, Dialect::wgsl, "every_case")});
+    const std::vector<std::vector<float>> results = run_by_wgpu(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) expect_right(results[i], jobs[i].dispatch.edge, i > 0, 8, "wgpu");
+}
+
+/// No software driver has fractions of 8 bits, as GPUs have: here they are.
+void execute_with_8_bits(Dialect dialect) {
+    if (is_sanitized) GTEST_SKIP() << "not under sanitizers, which a library without them cannot be loaded into";
+    std::vector<std::string> calls;
+    for (const Case& c : all_cases()) calls.push_back(translate(call_of(c, dialect), dialect));
+    const Library library(dialect, functions_of_all_cases(dialect), calls);
+    for (const Edge edge : sampler_edges) {
+        std::vector<float> result;
+        for (int call = 0; call < static_cast<int>(calls.size()); ++call)
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const auto u = static_cast<float>(first_uv + (x + 0.5) * step_x);
+                    const auto v = static_cast<float>(first_uv + (y + 0.5) * step_y);
+                    for (const double c : library(call, source(), other(), edge, 8, u, v))
+                        result.push_back(static_cast<float>(c));
+                }
+        expect_right(result, edge, false, 8, std::string(name_of(dialect)));
+    }
+}
+
+TEST(Execute, CppWithFractionsOf8Bits) { execute_with_8_bits(Dialect::cpp); }
+TEST(Execute, MetalAsCppWithFractionsOf8Bits) { execute_with_8_bits(Dialect::msl); }
 
 }  // namespace
 }  // namespace bandlimit::test

@@ -59,7 +59,7 @@ constexpr std::string_view bspline_1d =
 )";
 
 constexpr std::string_view quadratic = R"(
-    // Two reads an axis: t is where uv lies in its texel, from edge to edge.
+    // Two reads an axis, between the nearest texel and those beside it.
     let(float2, position) = uv / texel;
     let(float2, base) = floor(position);
     let(float2, high) = position - base;
@@ -215,7 +215,7 @@ std::string sine_over(const std::string& variable) {
     return text;
 }
 
-constexpr int jinc_intervals = 128;
+constexpr int jinc_intervals = 256;
 
 /// The kernel over the squared distance, from 0 to the square of its radius, and two zeros at the end.
 std::string jinc2_source() {

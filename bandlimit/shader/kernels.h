@@ -26,7 +26,7 @@ std::span<const KernelShader> kernel_shaders();
 /// sampler's. sample_bspline_1d has a parameter more, the axis along which it filters: (1, 0) or (0, 1). srgb is
 /// srgb_from_linear(colour) and linear_from_srgb(colour), the exact curve in two pieces, which leave alpha as it is.
 ///
-/// error    of the weights: 3e-7 from rounding; sample_jinc2 5e-5 of the largest from its table
+/// error    of the weights: 3e-7 from rounding; sample_jinc2 1e-4 of the largest from its table
 /// throws   Error for another name
 std::string kernel_shader(std::string_view name, const std::string& command, Dialect dialect);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bandlimit/color/half.h"
 #include "bandlimit/core/axis.h"
 #include "bandlimit/core/edge.h"
 
@@ -42,6 +43,13 @@ inline Picture procedural(int width, int height, std::uint32_t seed) {
                 p.texels.push_back(static_cast<float>(std::floor((0.6 * wave + 0.4 * noise) * 1024) / 1024));
             }
     return p;
+}
+
+/// Its texels as GPUs get them, exactly.
+inline std::vector<Half> halves_of(const Picture& picture) {
+    std::vector<Half> out;
+    for (const float v : picture.texels) out.push_back(to_half(v));
+    return out;
 }
 
 inline double largest_step(const Colour& a, const Colour& b) {

@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "bandlimit/color/half.h"
-
 #ifdef BANDLIMIT_TEST_VULKAN
 #include <vulkan/vulkan.h>
 
@@ -119,12 +117,6 @@ struct Texture {
 
 constexpr VkImageSubresourceLayers colour_layer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-std::vector<std::uint16_t> halves_of(const Picture& picture) {
-    std::vector<std::uint16_t> out;
-    for (const float v : picture.texels) out.push_back(to_half(v).bits);
-    return out;
-}
-
 }  // namespace
 
 /// One run: everything that is made for it, and undone after it.
@@ -220,7 +212,7 @@ private:
     }
 
     Texture upload(const Picture& picture) {
-        const std::vector<std::uint16_t> halves = halves_of(picture);
+        const std::vector<Half> halves = halves_of(picture);
         const Buffer staging = buffer(halves.size() * 2, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
         std::memcpy(staging.data, halves.data(), halves.size() * 2);
         const Texture t = texture(picture.width, picture.height, VK_FORMAT_R16G16B16A16_SFLOAT,
@@ -355,9 +347,9 @@ private:
             const auto* values = static_cast<const float*>(staging.data);
             return {values, values + samples};
         }
-        const auto* halves = static_cast<const std::uint16_t*>(staging.data);
+        const auto* halves = static_cast<const Half*>(staging.data);
         std::vector<float> out;
-        for (std::size_t i = 0; i < samples; ++i) out.push_back(to_float(Half{halves[i]}));
+        for (std::size_t i = 0; i < samples; ++i) out.push_back(to_float(halves[i]));
         return out;
     }
 
