@@ -35,7 +35,7 @@ TEST(Design1d, DerivativesKeepOrLoseSlopesAndSaySo) {
     EXPECT_EQ(file.taps->first, -4);
     EXPECT_NEAR(file.taps->weights[5], 61 / 60.0, 1e-12);
     // Taps of sum 0 are run with reflected edges.
-    EXPECT_EQ(shell("pattern zone-plate z.pgm --size 32x32").code, 0);
+    EXPECT_EQ(shell("pattern zoneplate z.pgm --size 32x32").code, 0);
 }
 
 TEST(Design1d, GaussiansAreFetchesAndTaps) {
@@ -70,7 +70,7 @@ TEST(Design1d, AFittedKernelIsUsedAsAnyOther) {
     const json a = mine.json()["phases"][0]["weights"], b = named.json()["phases"][0]["weights"];
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i].get<double>(), b[i].get<double>(), 1e-12);
-    EXPECT_EQ(shell("pattern zone-plate z.png --size 32x32").code, 0);
+    EXPECT_EQ(shell("pattern zoneplate z.png --size 32x32").code, 0);
     const Outcome resized = shell("resize z.png mine.png --size 20x45 --kernel mine.json --json");
     ASSERT_EQ(resized.code, 0) << resized;
     EXPECT_EQ(resized.json()["kernel"]["x"], "mine.json");
