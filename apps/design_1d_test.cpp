@@ -34,8 +34,6 @@ TEST(Design1d, DerivativesKeepOrLoseSlopesAndSaySo) {
     ASSERT_TRUE(file.taps && file.error);
     EXPECT_EQ(file.taps->first, -4);
     EXPECT_NEAR(file.taps->weights[5], 61 / 60.0, 1e-12);
-    // Taps of sum 0 are run with reflected edges.
-    EXPECT_EQ(shell("pattern zoneplate z.pgm --size 32x32").code, 0);
 }
 
 TEST(Design1d, GaussiansAreFetchesAndTaps) {
@@ -76,8 +74,8 @@ TEST(Design1d, AFittedKernelIsUsedAsAnyOther) {
     EXPECT_EQ(resized.json()["kernel"]["x"], "mine.json");
     EXPECT_EQ(shell("resize z.png named.png --size 20x45 --kernel bspline").code, 0);
     const Outcome compared = shell("compare mine.png named.png --json");
-    // A code may round the other way.
-    EXPECT_GT(compared.json()["psnr"].is_number() ? compared.json()["psnr"].get<double>() : 200.0, 70) << compared;
+    // Of 900 codes some may round the other way: each adds (1 / 255)^2 / 900.
+    EXPECT_LT(compared.json()["mse"].get<double>(), 1e-7) << compared;
 }
 
 TEST(Design1d, BadInputIsOneClearLine) {
