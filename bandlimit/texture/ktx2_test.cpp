@@ -247,7 +247,8 @@ TEST(Ktx2, WhatIsNotReadIsNamed) {
     EXPECT_TRUE(is_refused(patched(file, 52, 20), "descriptor"));
     EXPECT_TRUE(is_refused(patched(file, 60, 0xfffffff0), "key/value"));
     EXPECT_TRUE(is_refused(patched(file, word(file, 56), 0xffffffff), "key/value"));
-    EXPECT_TRUE(is_refused(patched(file, 84, 1), "level 0"));  // beyond 4 GiB
+    EXPECT_TRUE(is_refused(patched(file, 60, 20), "runs out"));  // the first entry takes 24
+    EXPECT_TRUE(is_refused(patched(file, 84, 1), "level 0"));    // beyond 4 GiB
     EXPECT_TRUE(is_refused(patched(file, 108, 0xffffffff), "level 1"));
     // An offset whose sum with a length that is right overflows.
     EXPECT_TRUE(is_refused(patched(patched(file, 80, 0xfffffff0), 84, 0xffffffff), "level 0"));
