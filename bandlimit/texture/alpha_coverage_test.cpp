@@ -126,6 +126,10 @@ TEST(CoverageFactor, FollowsTheOrder) {
     EXPECT_EQ(coverage_factor({0.2f, 0.6f}, 0.5, Depth::u8, 0.5), 1);
     EXPECT_EQ(coverage_factor({NAN, 0.6f}, 0.5, Depth::f32, 0.5), 1);
     EXPECT_EQ(coverage_factor({}, 0.5, Depth::f32, 0.5), 1);
+    // Zeros never pass: what is above them does.
+    const double factor_of_zeros = coverage_factor({0, 0, 0.3f, 0.2f}, 1, Depth::f32, 0.5);
+    EXPECT_TRUE(std::isfinite(factor_of_zeros));
+    EXPECT_GE(0.2f * factor_of_zeros, 0.5);
     // Half way between two halves: ties go to the even one, which is the one below here, or the one above.
     for (const std::uint16_t bits : {std::uint16_t(0x3801), std::uint16_t(0x3802)}) {
         const float passes = to_float(Half{bits}), below = to_float(Half{static_cast<std::uint16_t>(bits - 1)});

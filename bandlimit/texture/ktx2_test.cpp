@@ -221,6 +221,9 @@ TEST(Ktx2, RowsThatGoUpAreTurned) {
     }
     file[value] = std::byte{'l'};
     EXPECT_TRUE(is_refused(file, "orientation"));
+    FileContent cube = ktx2({4, Depth::u8}, {4, 4, 1, true});  // whose faces lie as the specification says
+    cube[word(cube, 56) + 4 + std::string_view("KTXorientation").size() + 2] = std::byte{'u'};
+    EXPECT_TRUE(is_refused(cube, "orientation"));
     // Without any key, the top is first.
     const FileContent plain = patched(patched(written(texture, Container::ktx2), 56, 0), 60, 0);
     EXPECT_TRUE(same_texture(read_container(plain, "t"), texture));
