@@ -71,7 +71,8 @@ TEST(TermFilter, ReadsAsShadersDo) {
     Fetches any = downsample8();
     any.push_back({1.3, -2.1, 0.25});
     any.push_back({-0.2, 0.9, -0.125});
-    for (const Fetches& fetches : {downsample8(), any})
+    const Fetches uneven{{0.3, -0.4, 0.6}, {-1.2, 3.7, 0.3}, {0.4, 2.2, 0.1}};  // the first term reads the fewest rows
+    for (const Fetches& fetches : {downsample8(), any, uneven})
         for (const auto& [w, h] : {std::pair{16, 16}, {17, 9}, {2, 2}, {3, 1}, {1, 5}, {33, 40}}) {
             const auto image = picture<float>(w, h, 1, [&](int, int, int) { return random.uniform(); });
             const int width = std::max(1, w / 2), height = std::max(1, h / 2);
@@ -95,6 +96,17 @@ TEST(TermFilter, ReadsAsShadersDo) {
                                 5e-6)
                         << w << " x " << h;
         }
+}
+
+TEST(TermFilter, DividesByAlphaWhatComesMultiplied) {
+    // Colour 1/2 at alpha 1/4, for a target that holds colour as it is.
+    const auto image = picture<float>(8, 8, 4, [](int, int, int c) { return c < 3 ? 0.125 : 0.25; });
+    Image<float> out(4, 4, 4, Layout::interleaved);
+    for (const bool premultiply : {true, false}) {
+        TermFilter(downsample8(), {{8}, {8}}, {{4}, {4}}, Edge::clamp, Edge::clamp, premultiply)
+            .run({image.view(), 0, {Transfer::linear, 3, true}}, {out.view(), 0, {Transfer::linear, 3, false}, {}}, {});
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(out.view()(1, 2, c), c < 3 ? 0.5 : 0.25, 1e-6) << premultiply;
+    }
 }
 
 TEST(TermFilter, RefusesWhatHasNoSum) {

@@ -126,6 +126,18 @@ TEST(CoverageFactor, FollowsTheOrder) {
     EXPECT_EQ(coverage_factor({0.2f, 0.6f}, 0.5, Depth::u8, 0.5), 1);
     EXPECT_EQ(coverage_factor({NAN, 0.6f}, 0.5, Depth::f32, 0.5), 1);
     EXPECT_EQ(coverage_factor({}, 0.5, Depth::f32, 0.5), 1);
+    // Zeros never pass: what is above them does.
+    const double factor_of_zeros = coverage_factor({0, 0, 0.3f, 0.2f}, 1, Depth::f32, 0.5);
+    EXPECT_TRUE(std::isfinite(factor_of_zeros));
+    EXPECT_GE(0.2f * factor_of_zeros, 0.5);
+    // Half way between two halves: ties go to the even one, which is the one below here, or the one above.
+    for (const std::uint16_t bits : {std::uint16_t(0x3801), std::uint16_t(0x3802)}) {
+        const float passes = to_float(Half{bits}), below = to_float(Half{static_cast<std::uint16_t>(bits - 1)});
+        const double middle = (static_cast<double>(passes) + static_cast<double>(below)) / 2;
+        const double factor =
+            coverage_factor({static_cast<float>(middle), 0.1f}, 0.5, Depth::f16, static_cast<double>(passes));
+        EXPECT_GE(to_float(to_half(static_cast<float>(middle * factor))), passes) << bits;
+    }
     // Three equal ones of four, half to pass: none or three; one is as far as three, and more is chosen.
     EXPECT_LT(coverage_factor({0.9f, 0.9f, 0.9f, 0.1f}, 0.25, Depth::u8, 0.5), 0.5 / 0.9);
     EXPECT_EQ(coverage_factor({0.9f, 0.9f, 0.9f, 0.1f}, 0.5, Depth::u8, 0.5), 1);

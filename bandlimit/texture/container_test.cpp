@@ -46,8 +46,8 @@ TEST(Container, EveryFormatComesBack) {
 }
 
 TEST(Container, EveryShapeComesBack) {
-    std::vector<Shape> shapes{{1, 1, 1},       {1, 17, 5},         {17, 1, 2},
-                              {6, 6, 3, true}, {5, 5, 1, true, 3}, {9, 4, 4, false, 7}};
+    std::vector<Shape> shapes{{1, 1, 1},          {1, 17, 5},          {17, 1, 2},           {6, 6, 3, true},
+                              {5, 5, 1, true, 3}, {9, 4, 4, false, 7}, {1, 1, 1, false, 200}};
     for (int width = 1; width <= 9; ++width)
         for (int height = 1; height <= 9; ++height) shapes.push_back({width, height, mip_count(width, height)});
     for (const Container container : containers)

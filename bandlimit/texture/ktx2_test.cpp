@@ -221,6 +221,9 @@ TEST(Ktx2, RowsThatGoUpAreTurned) {
     }
     file[value] = std::byte{'l'};
     EXPECT_TRUE(is_refused(file, "orientation"));
+    FileContent cube = ktx2({4, Depth::u8}, {4, 4, 1, true});  // whose faces lie as the specification says
+    cube[word(cube, 56) + 4 + std::string_view("KTXorientation").size() + 2] = std::byte{'u'};
+    EXPECT_TRUE(is_refused(cube, "orientation"));
     // Without any key, the top is first.
     const FileContent plain = patched(patched(written(texture, Container::ktx2), 56, 0), 60, 0);
     EXPECT_TRUE(same_texture(read_container(plain, "t"), texture));
@@ -247,7 +250,8 @@ TEST(Ktx2, WhatIsNotReadIsNamed) {
     EXPECT_TRUE(is_refused(patched(file, 52, 20), "descriptor"));
     EXPECT_TRUE(is_refused(patched(file, 60, 0xfffffff0), "key/value"));
     EXPECT_TRUE(is_refused(patched(file, word(file, 56), 0xffffffff), "key/value"));
-    EXPECT_TRUE(is_refused(patched(file, 84, 1), "level 0"));  // beyond 4 GiB
+    EXPECT_TRUE(is_refused(patched(file, 60, 20), "runs out"));  // the first entry takes 24
+    EXPECT_TRUE(is_refused(patched(file, 84, 1), "level 0"));    // beyond 4 GiB
     EXPECT_TRUE(is_refused(patched(file, 108, 0xffffffff), "level 1"));
     // An offset whose sum with a length that is right overflows.
     EXPECT_TRUE(is_refused(patched(patched(file, 80, 0xfffffff0), 84, 0xffffffff), "level 0"));

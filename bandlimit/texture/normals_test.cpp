@@ -64,8 +64,9 @@ TEST(NormalMips, KeepFlatMapsFlat) {
 
 TEST(NormalMips, AreUnitVectors) {
     for (const Depth depth : all_depths())
-        for (const MipFilter& filter : {MipFilter(Auto{}), MipFilter(box())}) {
-            const auto base = normal_map<float>(33, 20, 3, 1.5);
+        for (const double spread : {1.5, 0.05}) {  // means that are far from unit, and nearly so
+            const MipFilter filter = spread > 1 ? MipFilter(Auto{}) : MipFilter(box());
+            const auto base = normal_map<float>(33, 20, 3, spread);
             const MipChain chain =
                 make_mips(base.view(), plain, {4, depth, false, false}, {.role = Role::normal, .filter = filter});
             // Half a step of each component, or of a half's significand.
@@ -111,6 +112,33 @@ TEST(NormalMips, OfTwoChannelsUseTheirThird) {
     EXPECT_EQ(sample(c.images[0], 3, 3, 3), 65535);
 }
 
+// Whatever the direction, what is constant stays so to the code; and a fourth channel is data.
+TEST(NormalMips, KeepConstants) {
+    Random random(7);
+    for (int trial = 0; trial < 200; ++trial) {
+        const Normal n = random_normal(random, 1.5);
+        const auto base = picture<std::uint8_t>(
+            4, 2, 4, [&](int, int, int c) { return c < 3 ? std::lround((component(n, c) + 1) / 2 * 255) : 40; });
+        const MipChain chain = make_mips(base.view(), plain, rgba8, {.role = Role::normal});
+        for (const AnyImage& image : chain.images)
+            for (int c = 0; c < 4; ++c) ASSERT_EQ(sample(image, 0, 0, c), base.view()(0, 0, c)) << trial;
+    }
+}
+
+TEST(NormalMips, OfTwoChannelsThatAreTooLongLieInThePlane) {
+    const auto base = picture<std::uint8_t>(2, 2, 2, [](int, int, int) { return 255; });
+    const MipChain chain = make_mips(base.view(), plain, rg8, {.role = Role::normal});
+    EXPECT_EQ(sample(chain.images[1], 0, 0, 0), std::round((std::sqrt(0.5) + 1) / 2 * 255));
+    EXPECT_FALSE(chain.lost_non_finite);
+}
+
+TEST(NormalMips, KeepTheDirectionOfShortMeans) {
+    // (0.1, 1, 0) and (0.1, -1, 0): a tenth of a vector is left, along x.
+    const auto base = picture<float>(2, 1, 3, [](int x, int, int c) { return c == 0 ? 0.1 : c == 1 ? 1 - 2 * x : 0; });
+    const MipChain chain = make_mips(base.view(), plain, rgba32f, {.role = Role::normal, .filter = box()});
+    EXPECT_NEAR(sample(chain.images[1], 0, 0, 0), 1, 1e-6);
+}
+
 TEST(NormalMips, OfOppositeVectorsPointUp) {
     const auto base = picture<std::uint8_t>(4, 4, 3, [](int x, int y, int c) {
         return c == 2 ? 128 : (x + y) % 2 ? 255 : 0;
@@ -139,7 +167,7 @@ TEST(NormalMips, TreatZeroAsNothing) {
 TEST(NormalMoments, AreMeansOverExactCells) {
     const auto map = normal_map<float>(12, 9, 3, 1);
     NormalMoments moments(map.view(), {});
-    for (const auto& [w, h] : {std::pair{5, 4}, {4, 3}, {2, 1}, {1, 1}}) {
+    for (const auto& [w, h] : {std::pair{5, 4}, {4, 3}, {2, 2}, {2, 1}, {1, 1}}) {
         const View<const float> means = moments.means(w, h, {});
         ASSERT_EQ(means.width, w);
         for (int y = 0; y < h; ++y)

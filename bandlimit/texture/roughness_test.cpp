@@ -45,6 +45,8 @@ TEST(Roughness, IsItsVarianceAndBack) {
 TEST(LostVariance, GrowsAsMeansShorten) {
     EXPECT_EQ(lost_variance(1), 0);
     EXPECT_EQ(lost_variance(1 + 1e-6f), 0);
+    EXPECT_EQ(lost_variance(1 - 0x1p-22f), 0);  // the rounding of floats
+    EXPECT_GT(lost_variance(1 - 0x1p-20f), 0);
     EXPECT_EQ(lost_variance(0), INFINITY);
     float last = 0;
     for (float r = 0.999f; r > 0; r -= 0.001f) {
