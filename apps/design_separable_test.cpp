@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "apps/run_program_test.h"
-#include "bandlimit/math/random.h"
 #include "bandlimit/io/taps_json.h"
+#include "bandlimit/math/random.h"
 
 namespace bandlimit {
 namespace {
