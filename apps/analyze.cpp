@@ -44,11 +44,11 @@ struct ResponseAt {
 struct PhaseReport {
     double phase = 0;
     int first = 0;
-    std::optional<int> first_y;                ///< of radial kernels and of fetches, whose weights have rows
+    std::optional<int> first_y;                ///< of radial kernels, fetches and terms, whose weights have rows
     std::vector<std::vector<double>> weights;  ///< one row, or all of them
     double sum = 1, variance = 0, centroid = 0;
     std::vector<ResponseAt> responses;  ///< along x
-    std::vector<ResponseAt> diagonal;   ///< of fetches: H(f, f)
+    std::vector<ResponseAt> diagonal;   ///< of fetches and terms: H(f, f)
 };
 
 struct RowReport {
@@ -179,9 +179,16 @@ PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<d
     return report;
 }
 
-PhaseReport fetches_phase(const TapsFile& file, const std::vector<double>& frequencies) {
+/// The weights of fetches or terms in two dimensions.
+PlacedWeights2D placed_weights(const TapsFile& file) {
+    if (!file.fetches.empty()) return weights_of(file.fetches, phase_of(file));
+    const WeightGrid grid = expanded(file.terms);
+    return {double(centred_first(grid.width)), double(centred_first(grid.height)), grid.width, grid.weights};
+}
+
+PhaseReport grid_phase(const TapsFile& file, const std::vector<double>& frequencies) {
     const double phase = phase_of(file);
-    const PlacedWeights2D placed = weights_of(file.fetches, phase);
+    const PlacedWeights2D placed = placed_weights(file);
     const auto first = [phase](double at) { return static_cast<int>(std::lround(at + phase)); };
     PhaseReport report{phase, first(placed.first_x), first(placed.first_y), {}, 0, variance(placed), 0, {}, {}};
     double moment = 0;
@@ -202,7 +209,7 @@ PhaseReport fetches_phase(const TapsFile& file, const std::vector<double>& frequ
 
 PhaseReport phase_report(const Subject& subject, double phase, const std::vector<double>& frequencies) {
     if (const auto* file = std::get_if<TapsFile>(&subject)) {
-        if (!file->taps) return fetches_phase(*file, frequencies);
+        if (!file->taps) return grid_phase(*file, frequencies);
         return separable_phase(*file->taps, sum(*file->taps), phase_of(*file), frequencies);
     }
     const Kernel& kernel = std::get<Kernel>(subject);
@@ -300,6 +307,9 @@ void print_phase(const PhaseReport& p) {
     fmt::print("\nphase {:.6g}: first {}", p.phase, p.first);
     if (p.first_y) fmt::print(", first row {}", *p.first_y);
     fmt::print(", sum {:.6f}, variance {:.6f}, centroid {:.6f}\n", p.sum, p.variance, p.centroid);
+    constexpr std::size_t widest = 16;  // what fits a terminal; --json has all
+    if (p.weights.size() > 1 && p.weights.front().size() > widest)
+        return fmt::print("  {} x {} weights\n", p.weights.front().size(), p.weights.size());
     for (const std::vector<double>& row : p.weights) fmt::print("  {}\n", cells(row));
 }
 
@@ -356,6 +366,12 @@ Panel shape_panel(const Subject& subject) {
         return panel;
     }
     const TapsFile& file = std::get<TapsFile>(subject);
+    if (!file.taps && file.fetches.empty()) {
+        const WeightGrid grid = expanded(file.terms);
+        const double peak = std::abs(*std::max_element(grid.weights.begin(), grid.weights.end(),
+                                                       [](double a, double b) { return std::abs(a) < std::abs(b); }));
+        return {"sum of terms", "column", "row", {}, {}, {}, HeatMap{grid.width, grid.height, grid.weights, peak}};
+    }
     if (!file.taps) {
         panel = {"fetches", "x (source texels from the output)", "y", {{"", {}, {}, Series::Style::points}}};
         for (const Fetch& f : file.fetches) {
@@ -409,7 +425,7 @@ Subject read_subject(const Options& o) {
     if (!o.is_taps_file()) return parse_kernel(o.kernel);
     TapsFile file = read_taps(o.kernel);
     if (is_kernel(file)) return kernel_of(file, o.kernel);
-    if (file.fetches.empty()) taps_of(file, o.kernel);
+    if (file.fetches.empty() && file.terms.empty()) taps_of(file, o.kernel);
     if (!o.phase.empty() || !o.at.empty())
         throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
     return file;

@@ -75,6 +75,11 @@ ChosenWeights weights_of_file(const Options& o) {
         chosen.weights = weights_of(file.fetches, o.taps);
     } else if (o.radius > 0) {
         chosen.weights = centred(separable_terms(file.components, o.radius, reach_for(file.components, o.radius)));
+    } else if (is_kernel(file)) {
+        throw UsageError(
+            fmt::format("{}: holds a kernel, whose weights depend on a scale; use bandlimit resize --kernel", o.taps));
+    } else if (file.components.empty()) {
+        throw UsageError(fmt::format("{}: holds no weights; pass taps, fetches, terms or components", o.taps));
     } else {
         throw UsageError(fmt::format("{}: has components, which fit any radius; say which, with --radius PX", o.taps));
     }

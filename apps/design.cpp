@@ -22,6 +22,7 @@ void check_outputs(const Options& o) {
     if (!o.output.empty() && !o.output.ends_with(".json"))
         throw UsageError(fmt::format("-o: \"{}\" must end in .json; other verbs know taps by that", o.output));
     if (!o.plot.empty()) check_plot_format(o.plot);
+    if (!o.name.empty()) check_shader_name(o.name);
     if (o.json && o.emit && o.emit_to.empty())
         throw UsageError("--emit: it and --json both write to stdout; add --emit-to DIR, or -o instead of --json");
 }

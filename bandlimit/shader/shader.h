@@ -27,13 +27,15 @@ struct ShaderInfo {
     std::vector<std::string> notes = {};  ///< lines: what it is, its error, its response
 };
 
+/// Throws Error for a name that is no identifier in every dialect, as all that follow do.
+void check_shader_name(const std::string& name);
+
 /// A file of shader source.
 struct ShaderFile {
     std::string name, text;
 };
 
-// All that follow throw Error for a name that is no identifier in every dialect, for no weights, and for weights and
-// offsets that are not finite.
+// All that follow throw Error for such a name, for no weights, and for weights and offsets that are not finite.
 
 /// One pass: NAME(source, sampler, uv, texel), a sum of bilinear reads.
 /// cost     reads.size() reads

@@ -8,16 +8,6 @@
 namespace bandlimit {
 namespace {
 
-void check_name(const std::string& name) {
-    const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
-    const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
-    const bool plain = !name.empty() && lower(name.front()) && std::all_of(name.begin(), name.end(), allowed);
-    // GLSL keeps double underscores and gl_ for itself.
-    if (!plain || name.find("__") != std::string::npos || name.ends_with('_') || name.starts_with("gl_"))
-        fail("shader: \"", name,
-             "\" is no name for a function; pass small letters, digits and single underscores, as blur_25");
-}
-
 /// One line that ends no comment and continues on no other.
 std::string harmless(const std::string& line) {
     std::string out;
@@ -69,6 +59,16 @@ void describe_parameters(Header::Reads reads, Dialect dialect, std::string& out)
 
 }  // namespace
 
+void check_shader_name(const std::string& name) {
+    const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
+    const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
+    const bool plain = !name.empty() && lower(name.front()) && std::all_of(name.begin(), name.end(), allowed);
+    // GLSL keeps double underscores and gl_ for itself.
+    if (!plain || name.find("__") != std::string::npos || name.ends_with('_') || name.starts_with("gl_"))
+        fail("shader: \"", name,
+             "\" is no name for a function; pass small letters, digits and single underscores, as blur_25");
+}
+
 std::string number(double value, int digits) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
@@ -78,7 +78,7 @@ std::string number(double value, int digits) {
 }
 
 std::string shader_text(const ShaderInfo& info, const Header& header, const std::string& source, Dialect dialect) {
-    check_name(info.name);
+    check_shader_name(info.name);
     std::string out;
     comment(info.name + ": " + named(header.what, info.name), out);
     for (const std::string& line : info.notes) comment(line, out);
