@@ -133,6 +133,7 @@ TEST(MipStream, RefusesRowsThatDoNotHoldWhatIsNeeded) {
     EXPECT_GT(stream.steps(), 2);
     EXPECT_THROW(stream.advance(base.view(), 0, nowhere), Error);
     MipStream only_base(4, 1000, 4, Depth::u8, {}, unorm8, {.role = Role::data, .levels = 1}, {1});
+    EXPECT_EQ(MipStream(4, 512, 4, Depth::u8, {}, unorm8, {.role = Role::data, .levels = 1}).steps(), 2);
     for (int step = 0; step < only_base.steps(); ++step) only_base.advance(base.view(), 0, nowhere);
     EXPECT_THROW(only_base.advance(base.view(), 0, nowhere), Error);
 }

@@ -123,17 +123,6 @@ TEST(MakeMips, FromPreviousAreThoseFromBaseByTheBox) {
     }
 }
 
-TEST(MakeMips, HaveAnEdgeForEachAxis) {
-    // Rows that are all alike have a level whose rows are alike, unless zeros lie above them; columns likewise.
-    const auto rows = picture<float>(16, 16, 1, [](int x, int, int) { return 1 + x % 5; });
-    const auto columns = picture<float>(16, 16, 1, [](int, int y, int) { return 1 + y % 5; });
-    const MipOptions options{.role = Role::data, .edge_x = Edge::zero, .edge_y = Edge::clamp};
-    const MipChain across = make_mips(rows.view(), plain, r32f, options);
-    const MipChain down = make_mips(columns.view(), plain, r32f, options);
-    for (int i = 0; i < 8; ++i) EXPECT_NEAR(sample(across.images[1], i, 0), sample(across.images[1], i, 4), 1e-5);
-    EXPECT_GT(std::abs(sample(down.images[1], 0, 4) - sample(down.images[1], 4, 4)), 0.01);
-}
-
 TEST(MakeMips, HaveTheSameBitsForEveryNumberOfThreads) {
     const Image<std::uint8_t> base = noise_codes(70, 301, 4);
     for (const Role role : all_roles())
