@@ -111,7 +111,6 @@ void execute_taps_by(Compiler compiler, Dialect dialect) {
 TEST(ExecuteTaps, GlslByGlslang) { execute_taps_by(Compiler::glslang, Dialect::glsl); }
 TEST(ExecuteTaps, HlslByGlslang) { execute_taps_by(Compiler::glslang, Dialect::hlsl); }
 TEST(ExecuteTaps, SlangBySlang) { execute_taps_by(Compiler::slang, Dialect::slang); }
-TEST(ExecuteTaps, WgslByNaga) { execute_taps_by(Compiler::naga, Dialect::wgsl); }
 
 TEST(ExecuteTaps, WgslByWgpu) {
     BANDLIMIT_NEED(missing_wgpu());
