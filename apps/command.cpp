@@ -30,7 +30,7 @@ std::atomic<pid_t> running_group{0};
 
 /// Removes a folder and all in it, without what a signal handler must not call.
 void remove_tree(const char* path) noexcept {
-    const pid_t child = ::fork();
+    const pid_t child = ::_Fork();  // fork() takes locks, which the thread that was interrupted may hold
     if (child == 0) {
         ::execl("/bin/rm", "rm", "-rf", "--", path, static_cast<char*>(nullptr));
         ::_exit(127);
@@ -66,9 +66,11 @@ std::string search_path() {
 }
 
 /// Between fork and exec: nothing that allocates or locks. Does not return.
-[[noreturn]] void become(const char* command, const char* folder, const char* out, const char* err, char** variables) {
+[[noreturn]] void become(const char* command, const char* folder, const char* out, const char* err, char** variables,
+                         const sigset_t& signals) {
     ::setpgid(0, 0);
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(s, SIG_DFL);
+    ::pthread_sigmask(SIG_SETMASK, &signals, nullptr);
     const auto redirect = [](const char* path, int flags, int to) {
         const int file = ::open(path, flags, 0600);
         if (file < 0 || ::dup2(file, to) < 0) ::_exit(126);
@@ -136,11 +138,18 @@ CommandEnd run_command(const std::string& command, const std::string& folder, do
 
     const auto start = Clock::now();
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    // A signal that ends the program waits until its handler knows what to kill.
+    sigset_t all, before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
     const pid_t child = ::fork();
+    if (child == 0) become(command.c_str(), folder.c_str(), out.c_str(), err.c_str(), variables.data(), before);
+    if (child > 0) {
+        ::setpgid(child, child);  // here and in the child: whoever comes first
+        running_group = child;
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (child < 0) throw std::runtime_error(message("no process can be started (", std::strerror(errno), ")"));
-    if (child == 0) become(command.c_str(), folder.c_str(), out.c_str(), err.c_str(), variables.data());
-    ::setpgid(child, child);  // whoever comes first
-    running_group = child;
     CommandEnd end;
     int status = 0;
     auto pause = std::chrono::microseconds(200);
