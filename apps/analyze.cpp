@@ -119,10 +119,13 @@ std::vector<std::string_view> shaders_for(const std::string& name) {
     for (const KernelShader& s : kernel_shaders())
         if (s.kernel == kernel) names.push_back(s.name);
     if (!names.empty()) return names;
-    std::string kernels;
-    for (const KernelShader& s : kernel_shaders())
-        kernels += fmt::format("{}{}", kernels.empty() ? "" : ", ", s.kernel.empty() ? s.name : s.kernel);
-    throw UsageError(fmt::format("--emit: there is no shader of {}; there are shaders of {}", name, kernels));
+    std::vector<std::string_view> all;
+    for (const KernelShader& s : kernel_shaders()) {
+        const std::string_view each = s.kernel.empty() ? s.name : s.kernel;
+        if (all.empty() || all.back() != each) all.push_back(each);
+    }
+    throw UsageError(
+        fmt::format("--emit: there is no shader of {}; there are shaders of {}", name, fmt::join(all, ", ")));
 }
 
 /// What the command line alone shows to be wrong.

@@ -155,6 +155,18 @@ TEST(Analyze, ListsKernels) {
     for (const json& k : kernels) EXPECT_NE(list.out.find(k["name"].get<std::string>()), std::string::npos);
 }
 
+TEST(Analyze, EmitsShadersOfAKernelOrOneByItsName) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome both = shell("analyze bspline --emit wgsl");
+    EXPECT_TRUE(succeeds(both));
+    for (const char* part :
+         {"fn sample_bspline(", "fn sample_bspline_1d(", "Made by: bandlimit analyze bspline --emit wgsl"})
+        EXPECT_NE(both.out.find(part), std::string::npos) << part;
+    EXPECT_NE(shell("analyze srgb --emit glsl").out.find("vec4 linear_from_srgb("), std::string::npos);
+    for (const char* line : {"lanczos3 --emit glsl", "bspline --emit metal", "bspline --emit wgsl --json"})
+        EXPECT_EQ(shell(std::string("analyze ") + line).code, 2) << line;
+}
+
 TEST(Analyze, PlotsToSvgAndPng) {
     const Shell shell(BANDLIMIT_PROGRAM);
     ASSERT_TRUE(succeeds(shell("analyze mitchell --plot plot.svg")));
