@@ -7,13 +7,16 @@
 #include <variant>
 
 #include "apps/common.h"
+#include "apps/emit.h"
 #include "apps/plot.h"
 #include "bandlimit/analysis/kernel_spectrum.h"
 #include "bandlimit/analysis/response.h"
+#include "bandlimit/design/downsample.h"
 #include "bandlimit/io/taps_json.h"
 #include "bandlimit/kernel/kernel.h"
 #include "bandlimit/resample/bank.h"
 #include "bandlimit/resample/radial.h"
+#include "bandlimit/shader/kernels.h"
 
 namespace bandlimit::app {
 namespace {
@@ -23,6 +26,7 @@ using nlohmann::ordered_json;
 struct Options {
     std::string kernel, at, phase, frequency, rows, plot;
     std::optional<int> from, to;
+    std::optional<Dialect> emit;
     bool list = false, json = false;
 
     bool is_taps_file() const { return kernel.ends_with(".json"); }
@@ -40,10 +44,11 @@ struct ResponseAt {
 struct PhaseReport {
     double phase = 0;
     int first = 0;
-    std::optional<int> first_y;                ///< of radial kernels, whose weights have rows
-    std::vector<std::vector<double>> weights;  ///< one row, or those of a radial kernel
+    std::optional<int> first_y;                ///< of radial kernels, fetches and terms, whose weights have rows
+    std::vector<std::vector<double>> weights;  ///< one row, or all of them
     double sum = 1, variance = 0, centroid = 0;
-    std::vector<ResponseAt> responses;
+    std::vector<ResponseAt> responses;  ///< along x
+    std::vector<ResponseAt> diagonal;   ///< of fetches and terms: H(f, f)
 };
 
 struct RowReport {
@@ -103,22 +108,42 @@ std::vector<int> rows_of(const Options& o) {
     return rows;
 }
 
+/// The shaders that --emit prints: all of a kernel, or the one of that name.
+std::vector<std::string_view> shaders_for(const std::string& name) {
+    const auto known = [](std::string_view n) {
+        return std::ranges::any_of(kernel_shaders(), [&](const KernelShader& s) { return s.name == n; });
+    };
+    if (known(name)) return {std::ranges::find(kernel_shaders(), name, &KernelShader::name)->name};
+    std::vector<std::string_view> names;
+    const std::string kernel = parse_kernel(name).name;
+    for (const KernelShader& s : kernel_shaders())
+        if (s.kernel == kernel) names.push_back(s.name);
+    if (!names.empty()) return names;
+    std::string kernels;
+    for (const KernelShader& s : kernel_shaders())
+        kernels += fmt::format("{}{}", kernels.empty() ? "" : ", ", s.kernel.empty() ? s.name : s.kernel);
+    throw UsageError(fmt::format("--emit: there is no shader of {}; there are shaders of {}", name, kernels));
+}
+
 /// What the command line alone shows to be wrong.
 void check(const Options& o) {
     if (o.list) return;
     if (o.kernel.empty())
         throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
+    if (o.emit && o.json) throw UsageError("analyze: --emit and --json both print to stdout; leave one out");
+    if (o.emit && !o.plot.empty())
+        throw UsageError("analyze: --emit prints a shader and draws nothing; leave out --plot");
+    if (o.emit && !o.is_taps_file()) {
+        shaders_for(o.kernel);
+        return;
+    }
     if (o.from.has_value() != o.to.has_value())
         throw UsageError("analyze: --from and --to belong together; give both or none");
     if (!o.rows.empty() && !o.to)
         throw UsageError("--rows: there is no bank to show rows of; say which with --from N --to M");
     if (!o.at.empty()) parse_numbers("--at", o.at);
     phases_of(o), frequencies_of(o), rows_of(o);
-    if (o.is_taps_file()) {
-        if (!o.phase.empty() || !o.at.empty())
-            throw UsageError(
-                "analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
-    } else if (is_radial(parse_kernel(o.kernel)) && o.to) {
+    if (!o.is_taps_file() && is_radial(parse_kernel(o.kernel)) && o.to) {
         throw UsageError(
             fmt::format("analyze: {} is radial and has no rows along an axis; leave out --from and --to", o.kernel));
     }
@@ -128,10 +153,15 @@ void check(const Options& o) {
 // ---- Measuring
 // -------------------------------------------------------------------------------------------------------
 
+/// Where the output of `file` lies, right of input sample i * factor.
+double phase_of(const TapsFile& file) {
+    return file.kind == "upsample" ? output_texel({.upsample = true}) : output_offset({0, {}, file.factor});
+}
+
 PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, const std::vector<double>& frequencies) {
     const PlacedWeights placed(taps, phase);
     PhaseReport report{phase, taps.first, {}, {taps.weights}, sum_before, variance(placed), centroid(placed) + phase,
-                       {}};
+                       {},    {}};
     for (const double f : frequencies) report.responses.push_back({f, response(placed, f)});
     return report;
 }
@@ -139,7 +169,7 @@ PhaseReport separable_phase(const Taps& taps, double sum_before, double phase, c
 PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<double>& frequencies) {
     const RadialWeights radial = radial_weights_at(kernel, phase, 0);
     const PlacedWeights2D placed(radial, phase, 0);
-    PhaseReport report{phase, radial.first_x, radial.first_y, {}, radial.sum, variance(placed), 0, {}};
+    PhaseReport report{phase, radial.first_x, radial.first_y, {}, radial.sum, variance(placed), 0, {}, {}};
     for (int y = 0; y < radial.height; ++y) {
         const auto row = radial.weights.begin() + static_cast<std::ptrdiff_t>(y) * radial.width;
         report.weights.emplace_back(row, row + radial.width);
@@ -149,10 +179,38 @@ PhaseReport radial_phase(const Kernel& kernel, double phase, const std::vector<d
     return report;
 }
 
+/// The weights of fetches or terms in two dimensions.
+PlacedWeights2D placed_weights(const TapsFile& file) {
+    if (!file.fetches.empty()) return weights_of(file.fetches, phase_of(file));
+    const WeightGrid grid = expanded(file.terms);
+    return {double(centred_first(grid.width)), double(centred_first(grid.height)), grid.width, grid.weights};
+}
+
+PhaseReport grid_phase(const TapsFile& file, const std::vector<double>& frequencies) {
+    const double phase = phase_of(file);
+    const PlacedWeights2D placed = placed_weights(file);
+    const auto first = [phase](double at) { return static_cast<int>(std::lround(at + phase)); };
+    PhaseReport report{phase, first(placed.first_x), first(placed.first_y), {}, 0, variance(placed), 0, {}, {}};
+    double moment = 0;
+    for (auto at = placed.weights.begin(); at != placed.weights.end(); at += placed.width) {
+        report.weights.emplace_back(at, at + placed.width);
+        for (int x = 0; x < placed.width; ++x) {
+            report.sum += at[x];
+            moment += (report.first + x) * at[x];
+        }
+    }
+    report.centroid = moment / report.sum;
+    for (const double f : frequencies) {
+        report.responses.push_back({f, response(placed, f, 0)});
+        report.diagonal.push_back({f, response(placed, f, f)});
+    }
+    return report;
+}
+
 PhaseReport phase_report(const Subject& subject, double phase, const std::vector<double>& frequencies) {
     if (const auto* file = std::get_if<TapsFile>(&subject)) {
-        const double total = sum(*file->taps);
-        return separable_phase(*file->taps, total, output_offset(*file->taps), frequencies);
+        if (!file->taps) return grid_phase(*file, frequencies);
+        return separable_phase(*file->taps, sum(*file->taps), phase_of(*file), frequencies);
     }
     const Kernel& kernel = std::get<Kernel>(subject);
     if (is_radial(kernel)) return radial_phase(kernel, phase, frequencies);
@@ -167,7 +225,7 @@ Bank bank_of(const Options& o, const Subject& subject) {
                        fmt::format("the bank from {} to {} samples", *o.from, *o.to));
         return make_bank(*kernel, src, dst, Edge::renormalize);
     }
-    const Taps& taps = *std::get<TapsFile>(subject).taps;
+    const Taps& taps = taps_of(std::get<TapsFile>(subject), o.kernel);
     const int outputs = std::max(1, *o.from / taps.factor);
     if (*o.to != outputs)
         throw UsageError(fmt::format("{}: taps of factor {} take {} samples to {}, not {}; pass --to {}", o.kernel,
@@ -188,6 +246,7 @@ Report analyze(const Options& o, const Subject& subject) {
         for (const double p : phases_of(o)) report.phases.push_back(phase_report(subject, p, frequencies));
     } else {
         report.name = o.kernel;
+        report.separable = std::get<TapsFile>(subject).taps.has_value();
         report.phases.push_back(phase_report(subject, 0, frequencies));
     }
     if (!o.to) return report;
@@ -202,17 +261,22 @@ Report analyze(const Options& o, const Subject& subject) {
 // ---- Printing
 // --------------------------------------------------------------------------------------------------------
 
+ordered_json to_json(const std::vector<ResponseAt>& responses) {
+    ordered_json list = ordered_json::array();
+    for (const auto& [f, h] : responses)
+        list.push_back({{"f", f}, {"re", h.real()}, {"im", h.imag()}, {"gain", std::abs(h)}});
+    return list;
+}
+
 ordered_json to_json(const PhaseReport& p) {
-    ordered_json responses = ordered_json::array();
-    for (const auto& [f, h] : p.responses)
-        responses.push_back({{"f", f}, {"re", h.real()}, {"im", h.imag()}, {"gain", std::abs(h)}});
     ordered_json out{{"phase", p.phase}, {"first", p.first}};
     if (p.first_y) out["first_y"] = *p.first_y;
     out["weights"] = p.first_y ? ordered_json(p.weights) : ordered_json(p.weights.front());
     out["sum"] = p.sum;
     out["variance"] = p.variance;
     out["centroid"] = p.centroid;
-    out["response"] = responses;
+    out["response"] = to_json(p.responses);
+    if (!p.diagonal.empty()) out["response_diagonal"] = to_json(p.diagonal);
     return out;
 }
 
@@ -243,6 +307,9 @@ void print_phase(const PhaseReport& p) {
     fmt::print("\nphase {:.6g}: first {}", p.phase, p.first);
     if (p.first_y) fmt::print(", first row {}", *p.first_y);
     fmt::print(", sum {:.6f}, variance {:.6f}, centroid {:.6f}\n", p.sum, p.variance, p.centroid);
+    constexpr std::size_t widest = 16;  // what fits a terminal; --json has all
+    if (p.weights.size() > 1 && p.weights.front().size() > widest)
+        return fmt::print("  {} x {} weights\n", p.weights.front().size(), p.weights.size());
     for (const std::vector<double>& row : p.weights) fmt::print("  {}\n", cells(row));
 }
 
@@ -254,6 +321,9 @@ void print_gains(const Report& r) {
         line.clear();
         for (const ResponseAt& at : p.responses) line.push_back(std::abs(at.h));
         fmt::print("{:<14}{}\n", fmt::format("phase {:.4g}", p.phase), cells(line));
+        line.clear();
+        for (const ResponseAt& at : p.diagonal) line.push_back(std::abs(at.h));
+        if (!line.empty()) fmt::print("{:<14}{}\n", "at (f, f)", cells(line));
     }
     if (r.profile.empty()) return;
     line.clear();
@@ -287,17 +357,6 @@ void print_list(bool json) {
 // ---- Drawing
 // ---------------------------------------------------------------------------------------------------------
 
-template <class F>
-Series curve(const std::string& label, double from, double to, int steps, F f) {
-    Series series{label, {}, {}, Series::Style::line};
-    for (int i = 0; i <= steps; ++i) {
-        const double x = from + (to - from) * i / steps;
-        series.x.push_back(x);
-        series.y.push_back(f(x));
-    }
-    return series;
-}
-
 Panel shape_panel(const Subject& subject) {
     Panel panel{"", "distance from the output (source samples)", "weight", {}};
     if (const auto* kernel = std::get_if<Kernel>(&subject)) {
@@ -306,11 +365,24 @@ Panel shape_panel(const Subject& subject) {
         panel.series = {curve("", -reach, reach, 800, kernel->value)};
         return panel;
     }
-    const PlacedWeights placed(*std::get<TapsFile>(subject).taps);
+    const TapsFile& file = std::get<TapsFile>(subject);
+    if (!file.taps && file.fetches.empty()) {
+        const WeightGrid grid = expanded(file.terms);
+        const double peak = std::abs(*std::max_element(grid.weights.begin(), grid.weights.end(),
+                                                       [](double a, double b) { return std::abs(a) < std::abs(b); }));
+        return {"sum of terms", "column", "row", {}, {}, {}, HeatMap{grid.width, grid.height, grid.weights, peak}};
+    }
+    if (!file.taps) {
+        panel = {"fetches", "x (source texels from the output)", "y", {{"", {}, {}, Series::Style::points}}};
+        for (const Fetch& f : file.fetches) {
+            panel.series.front().x.push_back(f.x);
+            panel.series.front().y.push_back(f.y);
+        }
+        return panel;
+    }
+    const PlacedWeights placed(*file.taps, phase_of(file));
     panel.title = "taps";
-    Series stems{"", {}, placed.weights, Series::Style::stems};
-    for (std::size_t j = 0; j < placed.weights.size(); ++j) stems.x.push_back(placed.first + static_cast<double>(j));
-    panel.series = {stems};
+    panel.series = {stems("", placed.first, placed.weights)};
     return panel;
 }
 
@@ -319,13 +391,21 @@ Panel response_panel(const Report& r, const Subject& subject) {
     std::vector<double> frequencies;
     for (int i = 0; i <= steps; ++i) frequencies.push_back(0.5 * i / steps);
     Panel panel{"response", "frequency (cycles per source sample)", "gain", {}};
-    for (const PhaseReport& p : r.phases) {
-        Series series{r.phases.size() > 1 ? fmt::format("phase {:.3g}", p.phase) : "", {}, {}, Series::Style::line};
-        for (const auto& [f, h] : phase_report(subject, p.phase, frequencies).responses) {
+    const auto add = [&](const std::string& label, const std::vector<ResponseAt>& responses) {
+        Series series{label, {}, {}, Series::Style::line};
+        for (const auto& [f, h] : responses) {
             series.x.push_back(f);
             series.y.push_back(std::abs(h));
         }
         panel.series.push_back(std::move(series));
+    };
+    for (const PhaseReport& p : r.phases) {
+        const PhaseReport fine = phase_report(subject, p.phase, frequencies);
+        add(r.phases.size() > 1     ? fmt::format("phase {:.3g}", p.phase)
+            : fine.diagonal.empty() ? ""
+                                    : "(f, 0)",
+            fine.responses);
+        if (!fine.diagonal.empty()) add("(f, f)", fine.diagonal);
     }
     return panel;
 }
@@ -341,17 +421,30 @@ void plot(const Options& o, const Report& r, const Subject& subject) {
     draw(panels, o.plot, 400 * static_cast<int>(panels.size()), 360);
 }
 
-void run(const Options& o) {
-    if (o.list) return print_list(o.json);
-    if (!o.plot.empty()) check_output_path(o.plot);
-    Subject subject;
+Subject read_subject(const Options& o) {
+    if (!o.is_taps_file()) return parse_kernel(o.kernel);
+    TapsFile file = read_taps(o.kernel);
+    if (is_kernel(file)) return kernel_of(file, o.kernel);
+    if (file.fetches.empty() && file.terms.empty()) taps_of(file, o.kernel);
+    if (!o.phase.empty() || !o.at.empty())
+        throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
+    return file;
+}
+
+void emit(const Options& o, const std::string& command) {
     if (o.is_taps_file()) {
-        TapsFile file = read_taps(o.kernel);
-        taps_of(file, o.kernel);
-        subject = std::move(file);
-    } else {
-        subject = parse_kernel(o.kernel);
+        const TapsFile file = read_taps(o.kernel);
+        const std::vector<ShaderFile> files = shaders_of(file, {file.kind, command, {}}, *o.emit);
+        return fmt::print("{}", files.front().text);
     }
+    for (const std::string_view name : shaders_for(o.kernel)) fmt::print("{}", kernel_shader(name, command, *o.emit));
+}
+
+void run(const Options& o, const std::string& command) {
+    if (o.list) return print_list(o.json);
+    if (o.emit) return emit(o, command);
+    if (!o.plot.empty()) check_output_path(o.plot);
+    const Subject subject = read_subject(o);
     const Report report = analyze(o, subject);
     if (!o.plot.empty()) plot(o, report, subject);
     if (o.json) print_json(to_json(report));
@@ -386,9 +479,14 @@ void add_analyze(Program& program) {
     verb->add_option("--rows", o->rows, "Which outputs; default all")->type_name("I,...");
     verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
         ->type_name("OUT");
+    verb->add_option_function<std::string>(
+            "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
+            "Print shader source instead: functions that read a texture with the kernel, or one of them by its\n"
+            "name, as sample_catmull_rom_5; srgb for the curve; of a taps.json its first shader")
+        ->type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     add_json(verb, o->json);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o, &program] { run(*o, program.command); });
 }
 
 }  // namespace bandlimit::app

@@ -43,13 +43,6 @@ bool is_plain(char c) {
            std::strchr("./-_+,:@%=", c) != nullptr;
 }
 
-std::string quoted(const std::string& word) {
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-    std::string out = "'";
-    for (const char c : word) c == '\'' ? out += "'\\''" : out += c;
-    return out + "'";
-}
-
 /// The last line of a file that holds more than blanks, shortened.
 std::string last_line(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -108,6 +101,13 @@ TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
     folder_to_remove[0] = '\0';
+}
+
+std::string quoted(const std::string& word) {
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+    std::string out = "'";
+    for (const char c : word) c == '\'' ? out += "'\\''" : out += c;
+    return out + "'";
 }
 
 std::string filled_in(const std::string& command, const std::map<std::string, std::string>& values) {

@@ -20,8 +20,10 @@ private:
     std::string path_;
 };
 
-/// `command` with each {name} replaced by its value, quoted for the shell where it holds more than letters, digits and
-/// ./-_ . Other braces stay.
+/// `word` as the shell reads it back: in quotes where it holds more than letters, digits and ./-_+:,@%= .
+std::string quoted(const std::string& word);
+
+/// `command` with each {name} replaced by its value, quoted(). Other braces stay.
 std::string filled_in(const std::string& command, const std::map<std::string, std::string>& values);
 
 /// What a command did.

@@ -25,6 +25,7 @@ struct UsageError : std::runtime_error {
 struct Program {
     CLI::App cli{"bandlimit: sampling done right, for graphics", "bandlimit"};
     std::function<void()> selected;  ///< set by parsing
+    std::string command;             ///< the command line as one would paste it
 
     /// Adds a verb; `example` is a command line that works as pasted, or several, each on a line that begins with two
     /// blanks but the first.
@@ -39,10 +40,13 @@ void require_one_subcommand(CLI::App& app, const std::string& noun);
 
 void add_info(Program& program);
 void add_resize(Program& program);
+void add_convolve(Program& program);
+void add_bokeh(Program& program);
 void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_compare(Program& program);
 void add_analyze(Program& program);
+void add_design(Program& program);
 void add_audit(Program& program);
 void add_tour(Program& program);
 

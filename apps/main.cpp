@@ -90,13 +90,18 @@ int main(int argc, char** argv) {
     handle_signals();
     app::silence_codecs();
     app::Program program;
+    program.command = "bandlimit";
+    for (int i = 1; i < argc; ++i) program.command += " " + app::quoted(argv[i]);
     program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
     program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
     app::add_resize(program);
+    app::add_convolve(program);
+    app::add_bokeh(program);
     app::add_mips(program);
     app::add_pattern(program);
     app::add_compare(program);
     app::add_analyze(program);
+    app::add_design(program);
     app::add_audit(program);
     app::add_info(program);
     app::add_tour(program);

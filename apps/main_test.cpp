@@ -7,7 +7,7 @@
 namespace bandlimit {
 namespace {
 
-const std::array verbs{"resize", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
+const std::array verbs{"resize", "convolve", "bokeh", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
 const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
                        "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
 
@@ -25,7 +25,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
         std::string line, word;
     };
     for (const auto& [line, word] : {
-             Case{"", "resize, mips, pattern, compare, analyze, audit, info, tour"},
+             Case{"", "resize, convolve, bokeh, mips, pattern, compare, analyze, design, audit, info, tour"},
              {"frob", "\"frob\" is no verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "apps/common.h"
 #include "bandlimit/io/taps_json.h"
 
@@ -74,17 +76,25 @@ MipFilter filter_of(const MipsRecipe& recipe) {
     if (name == "downsample8") return downsample8();
     if (!is_taps_file(name)) return parse_kernel(name);
     const TapsFile file = read_taps(name);
+    if (is_kernel(file)) return kernel_of(file, name);
     if (file.factor != 2)
         throw UsageError(fmt::format(
             "--filter {}: its taps are made for a factor of {}, and every level halves; give taps of factor 2", name,
             file.factor));
+    if (!file.taps && !file.fetches.empty()) return file.fetches;
     return taps_of(file, name);
 }
 
 std::string name_of(const MipFilter& filter, int length) {
     if (const Kernel* kernel = std::get_if<Kernel>(&filter)) return kernel->name;
     if (std::holds_alternative<Taps>(filter)) return "taps";
-    if (std::holds_alternative<Fetches>(filter)) return "downsample8";
+    if (const Fetches* fetches = std::get_if<Fetches>(&filter)) {
+        const Fetches known = downsample8();
+        const bool is_known =
+            std::equal(fetches->begin(), fetches->end(), known.begin(), known.end(),
+                       [](const Fetch& a, const Fetch& b) { return a.x == b.x && a.y == b.y && a.weight == b.weight; });
+        return is_known ? "downsample8" : fmt::format("{} fetches", fetches->size());
+    }
     return auto_kernel({length, 0, 1}, {mip_length(length, 1), 0, 1}).name;
 }
 

@@ -49,7 +49,8 @@ struct RoleChoice {
 /// The role of a texture made of the picture `path`; `is_linear` where that is a texture whose codes have no curve.
 RoleChoice choose_role(const MipsRecipe& recipe, const std::string& path, bool is_linear);
 
-/// Reads the taps where a file holds them. Throws UsageError for taps that do not halve, else as read_taps.
+/// Reads the taps or the kernel where a file holds them. Throws UsageError for taps that do not halve, else as
+/// read_taps.
 MipFilter filter_of(const MipsRecipe& recipe);
 /// What the filter is called along an axis of so many texels.
 std::string name_of(const MipFilter& filter, int length);

@@ -101,6 +101,10 @@ struct Frame {
 
 Frame frame_of(const std::vector<Panel>& panels, int width) {
     Frame frame;
+    // What the colours mean stands to the right of a map.
+    if (panels.back().map) frame.right = 65;
+    if (std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.map.has_value(); }))
+        frame.between = 115;
     const auto count = static_cast<double>(panels.size());
     frame.panel_width = (width - frame.left - frame.right - (count - 1) * frame.between) / count;
     std::size_t lines = 0;
@@ -113,9 +117,26 @@ Frame frame_of(const std::vector<Panel>& panels, int width) {
     return frame;
 }
 
+/// Samples stand at whole numbers, from 0 on.
+std::string map_commands(const HeatMap& map) {
+    std::string text = "$map << EOD\n";
+    for (std::size_t i = 0; i < map.values.size(); ++i)
+        text += fmt::format("{:.5g}{}", map.values[i], (i + 1) % static_cast<std::size_t>(map.width) ? ' ' : '\n');
+    return text + fmt::format(
+                      "EOD\nunset key\nset size ratio -1\nset xrange [-0.5:{}-0.5]\nset yrange [{}-0.5:-0.5]\n"
+                      "set cbrange [{:.9g}:{:.9g}]\n"
+                      "set palette defined (-1 \"#08306b\", -0.5 \"#56b4e9\", 0 \"#ffffff\", 0.5 \"#e69f00\", "
+                      "1 \"#7f1d00\")\n"
+                      "set colorbox user origin graph 1.03, graph 0 size graph 0.04, graph 1\n"
+                      "plot $map matrix with image notitle\nset size noratio\n",
+                      map.width, map.height, -map.peak, map.peak);
+}
+
 std::string panel_commands(const Panel& panel, const Frame& frame, int height) {
     std::string text = "set title " + quoted(panel.title) + "\nset xlabel " + quoted(panel.x_label) + "\nset ylabel " +
-                       quoted(panel.y_label) + "\n" + range("x", panel.x_range) + range("y", panel.y_range);
+                       quoted(panel.y_label) + "\n";
+    if (panel.map) return text + map_commands(*panel.map);
+    text += range("x", panel.x_range) + range("y", panel.y_range);
     std::string plot;
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
         text += data_block(panel.series[i], i);
@@ -218,7 +239,39 @@ void run_gnuplot(const std::string& commands, const std::string& path, AtomicFil
     if (total == 0) throw std::runtime_error(path + ": gnuplot drew nothing: " + first_line(errors.get()));
 }
 
+void check_panel(const Panel& panel) {
+    if (panel.map) {
+        const HeatMap& map = *panel.map;
+        const auto cells = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+        if (map.values.empty() || map.values.size() != cells || !(map.peak > 0))
+            fail("draw: map \"", panel.title, "\" of ", map.width, " x ", map.height, " has ", map.values.size(),
+                 " values and the peak ", map.peak, "; pass as many as it has cells, and a peak above 0");
+        return;
+    }
+    if (panel.series.empty()) fail("draw: panel \"", panel.title, "\" has no series; pass at least one");
+    for (const Series& series : panel.series)
+        if (series.x.size() != series.y.size() || series.x.empty())
+            fail("draw: series \"", series.label, "\" has ", series.x.size(), " x and ", series.y.size(),
+                 " y; pass as many of both, and some");
+}
+
 }  // namespace
+
+Series curve(const std::string& label, double from, double to, int steps, const std::function<double(double)>& f) {
+    Series series{label, {}, {}, Series::Style::line};
+    for (int i = 0; i <= steps; ++i) {
+        const double x = from + (to - from) * i / steps;
+        series.x.push_back(x);
+        series.y.push_back(f(x));
+    }
+    return series;
+}
+
+Series stems(const std::string& label, double first, const std::vector<double>& weights) {
+    Series series{label, {}, weights, Series::Style::stems};
+    for (std::size_t j = 0; j < weights.size(); ++j) series.x.push_back(first + static_cast<double>(j));
+    return series;
+}
 
 void check_plot_format(const std::string& path) {
     std::error_code ignored;
@@ -229,13 +282,7 @@ void check_plot_format(const std::string& path) {
 
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height) {
     if (panels.empty()) fail("draw: no panel; pass at least one");
-    for (const Panel& panel : panels) {
-        if (panel.series.empty()) fail("draw: panel \"", panel.title, "\" has no series; pass at least one");
-        for (const Series& series : panel.series)
-            if (series.x.size() != series.y.size() || series.x.empty())
-                fail("draw: series \"", series.label, "\" has ", series.x.size(), " x and ", series.y.size(),
-                     " y; pass as many of both, and some");
-    }
+    for (const Panel& panel : panels) check_panel(panel);
     check_plot_format(path);
     AtomicFile out(path);
     run_gnuplot(script(panels, path, width, height), path, out);

@@ -1,5 +1,6 @@
 // Figures of curves, drawn by gnuplot.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,8 +20,22 @@ struct Series {
     Style style = Style::line;
 };
 
+/// `steps` + 1 points of f, evenly from `from` to `to`.
+Series curve(const std::string& label, double from, double to, int steps, const std::function<double(double)>& f);
+
+/// Weights at distances of 1, the first of them at `first`.
+Series stems(const std::string& label, double first, const std::vector<double>& weights);
+
 struct Range {
     double from = 0, to = 1;
+};
+
+/// Values on a grid as colours: white is 0, orange and red are above it, blue is below. Pixels are square, the first
+/// row is at the top.
+struct HeatMap {
+    int width = 0, height = 0;
+    std::vector<double> values = {};  ///< row after row
+    double peak = 1;                  ///< the magnitude of the deepest colours
 };
 
 /// One pair of axes. Labels say the unit.
@@ -28,12 +43,14 @@ struct Panel {
     std::string title, x_label, y_label;
     std::vector<Series> series;
     std::optional<Range> x_range = {}, y_range = {};  ///< default: what the series need
+    std::optional<HeatMap> map = {};                  ///< in place of series and ranges
 };
 
 /// Draws panels side by side, on a white ground, as SVG or PNG by the extension of `path`.
 ///
 /// units    width and height in pixels
-/// throws   Error for no panel, a series of x and y of different lengths, or another extension; std::runtime_error if
+/// throws   Error for no panel, a series of x and y of different lengths, a map whose values do not fill it, or another
+///          extension; std::runtime_error if
 ///          gnuplot is missing or fails, or the file cannot be written. It appears whole or not at all
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height);
 

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "apps/common.h"
-#include "apps/resize_stream.h"
+#include "apps/picture_filter.h"
+#include "apps/row_stream.h"
 #include "bandlimit/io/taps_json.h"
 #include "bandlimit/resample/resize.h"
 
@@ -106,11 +107,15 @@ ResizeOptions resize_options(const Options& o) {
     options.premultiply = o.premultiply.value_or(o.space != Space::data);
     if (o.is_taps_file()) {
         const TapsFile file = read_taps(o.kernel);
-        const Taps& taps = taps_of(file, o.kernel);
-        double sum = 0;
-        for (const double w : taps.weights) sum += w;
-        if (std::abs(sum) < 1e-9) options.edge = Edge::reflect;  // nothing to renormalize to
-        options.reconstruction = taps;
+        if (is_kernel(file)) {
+            options.reconstruction = kernel_of(file, o.kernel);
+        } else {
+            const Taps& taps = taps_of(file, o.kernel);
+            double sum = 0;
+            for (const double w : taps.weights) sum += w;
+            if (std::abs(sum) < 1e-9) options.edge = Edge::reflect;  // nothing to renormalize to
+            options.reconstruction = taps;
+        }
     } else if (o.kernel != "auto") {
         options.reconstruction = parse_kernel(o.kernel);
     }
@@ -123,13 +128,6 @@ struct Output {
     ImageTarget target;
     std::vector<float> background;
 };
-
-Transfer output_transfer(Space space, const ImageInfo& in, const FormatAbilities& format, Depth depth) {
-    if (space == Space::data || space == Space::linear || format.is_linear || !is_integer(depth))
-        return Transfer::linear;
-    if (space == Space::automatic && is_integer(in.depth)) return in.transfer;
-    return Transfer::srgb;
-}
 
 std::vector<float> background_of(const Options& o, const Encoding& source, int colours) {
     const std::array<double, 3> codes = parse_background(o.background);
@@ -220,12 +218,12 @@ void run(const Options& o) {
 
     ImageWriter writer(o.out, out.target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
-    if (o.space == Space::data) {  // alpha is a channel like the others, unless it was asked for
-        from.alpha = options.premultiply ? in.alpha : -1;
-        from.associated = in.associated;
-        to.alpha = options.premultiply ? out.target.alpha : -1;
-    }
-    stream_resize(resizer, reader, from, writer, to, out.target, out.background, shares.stages, stream);
+    treat_alpha_as_asked(o.space, options.premultiply, in.alpha, in.associated, out.target.alpha, from, to);
+    const RowFilter filter{"resize", "resizing", [&](int first, int last) { return resizer.rows_needed(first, last); },
+                           [&](const SourceRows& source, const TargetRows& target, Parallel threads) {
+                               return resizer.run(source, target, threads);
+                           }};
+    stream_rows(filter, reader, from, writer, to, out.target, out.background, shares.stages, stream);
     watch.time(stream.write, [&] { writer.finish(); });
     if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
     if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream, watch.total()));
@@ -269,16 +267,7 @@ void add_resize(Program& program) {
         ->type_name("X,Y,W,H");
     verb->add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1")->type_name("A");
     add_space(verb, o->space);
-    verb->add_option_function<std::string>(
-            "--alpha",
-            [o](const std::string& s) {
-                if (s != "premultiply" && s != "straight")
-                    throw UsageError("--alpha: \"" + s + "\" is unknown; choose premultiply or straight");
-                o->premultiply = s == "premultiply";
-            },
-            "premultiply (default): transparent texels do not bleed, and come out with colour 0;\n"
-            "straight: every channel by itself (default for --space data)")
-        ->type_name("premultiply|straight");
+    add_alpha(verb, o->premultiply);
     verb->add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")
         ->type_name("RRGGBB");
     add_depth(verb, o->depth);

@@ -248,7 +248,7 @@ TEST(Resize, TapsAreAKernelForTheirFactor) {
     const Shell shell(BANDLIMIT_PROGRAM);
     AnyImage image = noise(Depth::f32, 20, 14, 2);
     save(shell / "in.exr", image);
-    write_taps(shell / "box.json", {"downsample", 2, {}, {}, Taps{0, {0.5, 0.5}, 2}});
+    write_taps(shell / "box.json", {.kind = "downsample", .factor = 2, .taps = Taps{0, {0.5, 0.5}, 2}});
     ASSERT_TRUE(succeeds(shell("resize in.exr taps.exr --scale 0.5 --kernel box.json")));
     ASSERT_TRUE(succeeds(shell("resize in.exr box.exr --scale 0.5 --kernel box")));
     AnyImage taps = read_image(shell / "taps.exr"), box = read_image(shell / "box.exr");
@@ -261,7 +261,7 @@ TEST(Resize, TapsAreAKernelForTheirFactor) {
     write_bytes(shell / "cut.json", bytes_of(shell / "box.json").substr(0, 30));
     EXPECT_TRUE(fails(1, shell("resize in.exr no.exr --scale 0.5 --kernel cut.json"), "cut.json"));
     // A derivative has nothing to renormalise to: what lies outside is reflected, unless the user insists.
-    write_taps(shell / "slope.json", {"derivative", 1, {}, {}, Taps{-1, {-0.5, 0, 0.5}, 1}});
+    write_taps(shell / "slope.json", {.kind = "derivative", .factor = 1, .taps = Taps{-1, {-0.5, 0, 0.5}, 1}});
     EXPECT_TRUE(succeeds(shell("resize in.exr slope.exr --scale 1 --kernel slope.json")));
     EXPECT_TRUE(fails(2, shell("resize in.exr no.exr --scale 1 --kernel slope.json --edge renormalize"), "reflect"));
 }

@@ -127,7 +127,8 @@ TEST(Analyze, RowsOfTheExactBox) {
 
 TEST(Analyze, TapsFiles) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    write_taps(shell / "taps.json", {"downsample", 2, {}, {}, Taps{-1, {0.125, 0.375, 0.375, 0.125}, 2}});
+    write_taps(shell / "taps.json",
+               {.kind = "downsample", .factor = 2, .taps = Taps{-1, {0.125, 0.375, 0.375, 0.125}, 2}});
     const json r = report(shell, "analyze taps.json --frequency 0,0.5 --from 8 --to 4 --rows 1");
     EXPECT_TRUE(r["radius"].is_null());
     const json& phase = r["phases"][0];

@@ -30,18 +30,6 @@ void tour_splines(Tour& tour);  ///< linear, quadratic and cubic interpolation
 void tour_images(Tour& tour);   ///< zone plate, kernels of auto, star, photograph
 void tour_mips(Tour& tour);     ///< mip maps: light, coverage, normals, motion
 void tour_audit(Tour& tour);    ///< what other resizers do
-
-/// Values f(x) at `count` equal steps over [from, to], as a line of a plot.
-template <class F>
-Series curve(const std::string& label, double from, double to, int count, F f) {
-    Series series;
-    series.label = label;
-    for (int i = 0; i < count; ++i) {
-        const double x = from + (to - from) * i / (count - 1);
-        series.x.push_back(x);
-        series.y.push_back(f(x));
-    }
-    return series;
-}
+void tour_design(Tour& tour);   ///< designed filters: few reads, low rank, phasors, bokeh
 
 }  // namespace bandlimit::app

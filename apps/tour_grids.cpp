@@ -37,9 +37,9 @@ void downsampling(Tour& tour) {
     Panel panel{
         .title = "", .x_label = "cycles per source sample (from 0.25 on it folds)", .y_label = "gain", .series = {}};
     const auto gain_of = [](const PlacedWeights& w) { return [&w](double f) { return gain(w, f); }; };
-    panel.series = {curve("box [1 1]/2", 0, 0.5, 201, gain_of(box_weights)),
-                    curve("[1 2 1]/4", 0, 0.5, 201, gain_of(tent_weights)),
-                    curve("lanczos3, 12 taps", 0, 0.5, 201, gain_of(lanczos_weights))};
+    panel.series = {curve("box [1 1]/2", 0, 0.5, 200, gain_of(box_weights)),
+                    curve("[1 2 1]/4", 0, 0.5, 200, gain_of(tent_weights)),
+                    curve("lanczos3, 12 taps", 0, 0.5, 200, gain_of(lanczos_weights))};
     tour.page.figure(tour.plot("halving.svg", {panel}, 720, 330),
                      "What each filter keeps before every second sample is taken.",
                      "bandlimit analyze lanczos3 --from 64 --to 32 --rows 16", 720);
@@ -78,8 +78,8 @@ void upsampling(Tour& tour) {
     const PlacedWeights even(Taps{0, {0.125, 0.375, 0.375, 0.125}, 4}), odd(Taps{-1, {0.25, 0.5, 0.25}, 1});
     Panel panel{
         .title = "", .x_label = "cycles per new sample (above 0.25 are replicas)", .y_label = "gain", .series = {}};
-    panel.series = {curve("[1 3 3 1]/8: shared corners", 0, 0.5, 201, [&](double f) { return gain(even, f); }),
-                    curve("[1 2 1]/4: shared centres", 0, 0.5, 201, [&](double f) { return gain(odd, f); })};
+    panel.series = {curve("[1 3 3 1]/8: shared corners", 0, 0.5, 200, [&](double f) { return gain(even, f); }),
+                    curve("[1 2 1]/4: shared centres", 0, 0.5, 200, [&](double f) { return gain(odd, f); })};
     tour.page.figure(tour.plot("doubling.svg", {panel}, 720, 330),
                      "Seen as filters on the samples with zeros in between: the even form leaves less of the replicas.",
                      "echo "

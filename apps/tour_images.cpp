@@ -140,8 +140,8 @@ void auto_kernels_part(Tour& tour) {
         stop{.title = "what is let through", .x_label = "cycles per sample", .y_label = "dB", .series = {}};
     stop.y_range = Range{-80, 0};
     for (const Kernel& kernel : {lanczos(3), shrink3(), grow3()}) {
-        pass.series.push_back(curve(kernel.name, 0, 0.75, 151, [&](double f) { return relative_spectrum(kernel, f); }));
-        stop.series.push_back(curve(kernel.name, 0.5, 3, 501, [&](double f) {
+        pass.series.push_back(curve(kernel.name, 0, 0.75, 150, [&](double f) { return relative_spectrum(kernel, f); }));
+        stop.series.push_back(curve(kernel.name, 0.5, 3, 500, [&](double f) {
             return std::max(-80.0, 20 * std::log10(std::abs(relative_spectrum(kernel, f))));
         }));
     }

@@ -34,7 +34,7 @@ void no_op(Tour& tour) {
         lanczos_2d);
     const Kernel kernel = lanczos(2);
     Panel panel{.title = "", .x_label = "samples from the centre", .y_label = "weight", .series = {}};
-    panel.series = {curve("lanczos2", -2.5, 2.5, 401, kernel.value), samples_of(kernel, 2)};
+    panel.series = {curve("lanczos2", -2.5, 2.5, 400, kernel.value), samples_of(kernel, 2)};
     tour.page.figure(tour.plot("lanczos-no-op.svg", {panel}, 720, 300),
                      "Centred on a sample, Lanczos-2 reads 1 there and 0 everywhere else.",
                      "bandlimit analyze lanczos2 --at -2,-1,0,1,2 --phase 0", 720);
@@ -73,7 +73,7 @@ Peak peak_of(const Kernel& kernel) {
 Panel profile_panel(const std::string& title, const std::vector<Kernel>& kernels) {
     Panel panel{.title = title, .x_label = "cycles per sample", .y_label = "gain, relative to 0", .series = {}};
     for (const Kernel& k : kernels)
-        panel.series.push_back(curve(k.name, 0, 1, 301, [&](double q) { return relative_spectrum(k, q); }));
+        panel.series.push_back(curve(k.name, 0, 1, 300, [&](double q) { return relative_spectrum(k, q); }));
     return panel;
 }
 

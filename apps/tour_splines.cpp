@@ -39,7 +39,7 @@ void tour_splines(Tour& tour) {
     for (const Interpolation& i : interpolations) {
         Panel panel{.title = i.title, .x_label = "cycles per sample", .y_label = "gain", .series = {}};
         for (const Phase& phase : phases)
-            panel.series.push_back(curve(std::string("offset ") + phase.name, 0, 0.5, 101,
+            panel.series.push_back(curve(std::string("offset ") + phase.name, 0, 0.5, 100,
                                          [&](double f) { return gain(at_phase(i.kernel, phase.value), f); }));
         panels.push_back(panel);
     }
@@ -51,7 +51,7 @@ void tour_splines(Tour& tour) {
     Panel variances{.title = "", .x_label = "offset from a sample", .y_label = "variance kept", .series = {}};
     for (const Interpolation& i : interpolations)
         variances.series.push_back(
-            curve(i.title, 0, 1, 121, [&](double p) { return variance(at_phase(i.kernel, p)); }));
+            curve(i.title, 0, 1, 120, [&](double p) { return variance(at_phase(i.kernel, p)); }));
     tour.page.figure(tour.plot("splines-variance.svg", {variances}, 720, 320),
                      "Sum of the squared weights, by which the variance of noise is scaled, over the offset.",
                      "bandlimit analyze tent --phase 0,0.25,0.5,0.75", 720);

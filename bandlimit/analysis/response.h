@@ -66,6 +66,8 @@ struct PlacedWeights2D {
     int width = 0;
     std::vector<double> weights;
 
+    PlacedWeights2D(double first_x, double first_y, int width, std::vector<double> weights)
+        : first_x(first_x), first_y(first_y), width(width), weights(std::move(weights)) {}
     /// weight(x, y) = x.weights * y.weights.
     PlacedWeights2D(const PlacedWeights& x, const PlacedWeights& y);
     /// The output lies at (phase_x, phase_y), as in radial_weights_at().

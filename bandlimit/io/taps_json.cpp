@@ -23,7 +23,7 @@ constexpr int version = 1;
 constexpr int largest_factor = 4096;
 constexpr int largest_first = 1'000'000;
 constexpr std::size_t most_weights = 65'536;
-constexpr std::size_t most_terms = 64, most_components = 16;
+constexpr std::size_t most_terms = 64, most_components = 16, most_pieces = 64;
 constexpr std::uintmax_t most_bytes = 16 << 20;
 constexpr int deepest = 16;  // braces and brackets around anything in such a file
 
@@ -123,6 +123,20 @@ void parse_2d(const json& root, const std::string& name, TapsFile& file) {
     });
 }
 
+/// Throws what piecewise_kernel would say against them, as an error of the file.
+void parse_pieces(const json& root, const std::string& name, TapsFile& file) {
+    file.pieces = list_of(root, "pieces", most_pieces, name, [&](const json& piece) {
+        return KernelPiece{part(piece, "begin", name), part(piece, "end", name),
+                           numbers(member(piece, "coefficients"), name, "coefficients")};
+    });
+    if (file.pieces.empty()) return;
+    try {
+        piecewise_kernel(file.pieces, name);
+    } catch (const Error& e) {
+        fail_file(name, "\"pieces\" make no kernel: ", e.what());
+    }
+}
+
 }  // namespace
 
 TapsFile parse_taps(std::string_view text, const std::string& name) {
@@ -150,6 +164,7 @@ TapsFile parse_taps(std::string_view text, const std::string& name) {
     if (const json* values = member(root, "singular_values"))
         file.singular_values = numbers(values, name, "singular_values");
     parse_2d(root, name, file);
+    parse_pieces(root, name, file);
     return file;
 }
 
@@ -173,6 +188,13 @@ const Taps& taps_of(const TapsFile& file, const std::string& name) {
     return *file.taps;
 }
 
+Kernel kernel_of(const TapsFile& file, const std::string& name) {
+    if (file.pieces.empty())
+        fail_file(name, "holds no kernel", file.kind.empty() ? "" : " (its kind is \"" + file.kind + "\")",
+                  "; name a file with \"pieces\"");
+    return piecewise_kernel(file.pieces, name);
+}
+
 std::string taps_text(const TapsFile& file) {
     if (file.taps && file.taps->factor != file.factor)
         fail("taps_text: taps of factor ", file.taps->factor, " in a file of factor ", file.factor,
@@ -192,6 +214,8 @@ std::string taps_text(const TapsFile& file) {
     for (const Term& t : file.terms) root["terms"].push_back({{"column", t.column}, {"row", t.row}});
     for (const Component& c : file.components)
         root["components"].push_back({{"a", c.a}, {"b", c.b}, {"A", c.A}, {"B", c.B}});
+    for (const KernelPiece& p : file.pieces)
+        root["pieces"].push_back({{"begin", p.begin}, {"end", p.end}, {"coefficients", p.coefficients}});
     add("loss", file.loss);
     if (!file.singular_values.empty()) root["singular_values"] = file.singular_values;
     add("radius", file.radius);

@@ -14,11 +14,14 @@
 //                                         weight(x, y) = sum of column[y] * row[x], centred on the output
 //       "components": [ { "a":, "b":, "A":, "B": } ],
 //                                         weight(x, y) = sum of Re (A - iB) exp((-a + ib)(x^2 + y^2)), in radii
+//       "pieces": [ { "begin": 0, "end": 1, "coefficients": [ ... ] } ],
+//                                         a kernel: on begin <= |x| < end the sum of coefficients[n] (|x| - begin)^n
 //       "loss": 0.02, "singular_values": [ ... ], "radius": 1 }
-//                                         optional: what was minimised, of the shape given, and of the disc
+//                                         optional: what was minimised, of the shape given, of the disc in samples
 //
-// What applies of the four lists is there; all that are there describe one filter. Other keys are allowed and ignored.
-// Limits: 65536 numbers in a list, |first| <= 1000000, 64 terms of equal lengths, 16 components, 16 MB of text.
+// What applies of the five lists is there; all that are there describe one filter. Other keys are allowed and ignored.
+// Limits: 65536 numbers in a list, |first| <= 1000000, 64 terms of equal lengths, 16 components, 64 pieces
+// of 16 coefficients, 16 MB of text.
 #pragma once
 #include <optional>
 #include <string>
@@ -26,6 +29,7 @@
 #include <vector>
 
 #include "bandlimit/kernel/fetches.h"
+#include "bandlimit/kernel/piecewise.h"
 #include "bandlimit/kernel/taps.h"
 #include "bandlimit/kernel/terms.h"
 
@@ -39,9 +43,10 @@ struct TapsFile {
     std::optional<double> cost = {};
     std::optional<double> multiply_adds = {};
     std::optional<Taps> taps = {};  ///< their factor is the file's
-    Fetches fetches = {};           ///< these and the next two: empty where there are none
+    Fetches fetches = {};           ///< these and the next three: empty where there are none
     Terms terms = {};
     Components components = {};
+    KernelPieces pieces = {};
     std::optional<double> loss = {};
     std::vector<double> singular_values = {};
     std::optional<double> radius = {};
@@ -58,6 +63,13 @@ TapsFile read_taps(const std::string& path);
 /// The 1D taps of `file`, which came from `name`.
 /// throws   std::runtime_error if it has none
 const Taps& taps_of(const TapsFile& file, const std::string& name);
+
+/// Whether `file` is a kernel: it has pieces and no taps.
+inline bool is_kernel(const TapsFile& file) { return !file.taps && !file.pieces.empty(); }
+
+/// The kernel of `file`, which came from `name`, and is called so.
+/// throws   std::runtime_error if it has none
+Kernel kernel_of(const TapsFile& file, const std::string& name);
 
 /// The text of `file`; parsing it again gives the same numbers, bit for bit.
 /// throws   Error for content that parse_taps would refuse

@@ -56,12 +56,31 @@ TEST(TapsJson, ListsOfTwoDimensionsComeBackBitForBit) {
     EXPECT_EQ(again.multiply_adds, 12);
 }
 
+TEST(TapsJson, AKernelComesBackBitForBit) {
+    TapsFile file{.kind = "kernel"};
+    file.pieces = {{0, 1.0 / 3, {1, 0, -0.1}}, {1.0 / 3, 2, {0.7, -0.2, 5e-324, 3}}};
+    const TapsFile again = parse_taps(taps_text(file), "x");
+    EXPECT_EQ(taps_text(again), taps_text(file));
+    const Kernel kernel = kernel_of(again, "mine.json");
+    EXPECT_EQ(kernel.name, "mine.json");
+    EXPECT_EQ(kernel.radius, 2);
+    for (const double x : {0.0, 0.25, 1.0, -1.5}) EXPECT_EQ(kernel.value(x), value_of(file.pieces, x));
+    EXPECT_TRUE(fails_for(
+        "x", [] { kernel_of(example(), "x"); }, "holds no kernel (its kind is \"downsample\")"));
+    file.pieces[1].begin = 0.5;
+    EXPECT_THROW(taps_text(file), Error);
+}
+
 TEST(TapsJson, HostileListsAreOneClearError) {
     for (const std::string text :
          {R"("fetches":1)", R"("fetches":[1])", R"("fetches":[{"x":0,"y":0}])", R"("terms":[{"column":[1]}])",
           R"("terms":[{"column":[],"row":[1]}])", R"("terms":[{"column":[1],"row":[1]},{"column":[1],"row":[1,2]}])",
           R"("components":[{"a":1,"b":1,"A":1}])", R"("components":[{"a":1,"b":1,"A":1,"B":"x"}])",
-          R"("components":{})", R"("singular_values":[])", R"("radius":"1")", R"("loss":1e999)"})
+          R"("components":{})", R"("pieces":[{"begin":0,"end":1}])",
+          R"("pieces":[{"begin":1,"end":2,"coefficients":[1]}])",
+          R"("pieces":[{"begin":0,"end":1e300,"coefficients":[1]}])",
+          R"("pieces":[{"begin":0,"end":1,"coefficients":[]}])", R"("singular_values":[])", R"("radius":"1")",
+          R"("loss":1e999)"})
         EXPECT_TRUE(fails_for(
             "x", [&] { parse_taps("{\"version\":1," + text + "}", "x"); }, "; "))
             << text;

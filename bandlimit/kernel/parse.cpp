@@ -5,6 +5,7 @@
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/kernel/kernel.h"
+#include "bandlimit/kernel/name_parts.h"
 
 namespace bandlimit {
 namespace {
@@ -72,30 +73,6 @@ constexpr std::array ambiguities{
     Ambiguity{"gauss", "gaussian:SIGMA, as gaussian:0.5"},
 };
 
-/// A name taken apart: the word, digits that end it, what follows them, and the parameters after colons.
-struct Parts {
-    std::string_view whole, head;
-    std::vector<std::string_view> parameters;
-};
-
-std::optional<double> parse_number(std::string_view text) {
-    double value = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (status != std::errc{} || end != text.data() + text.size()) return {};
-    return value;
-}
-
-Parts split(std::string_view name) {
-    Parts parts{name, name.substr(0, name.find(':')), {}};
-    for (auto colon = name.find(':'); colon != std::string_view::npos;) {
-        const auto next = name.find(':', colon + 1);
-        const auto word = name.substr(colon + 1, next == std::string_view::npos ? next : next - colon - 1);
-        parts.parameters.push_back(word);
-        colon = next;
-    }
-    return parts;
-}
-
 /// `N` of a head that reads prefix N suffix.
 std::optional<int> lobes_of(std::string_view head, std::string_view prefix, std::string_view suffix) {
     if (!head.starts_with(prefix) || !head.ends_with(suffix) || head.size() <= prefix.size() + suffix.size()) return {};
@@ -104,11 +81,6 @@ std::optional<int> lobes_of(std::string_view head, std::string_view prefix, std:
     const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), lobes);
     if (status != std::errc{} || end != digits.data() + digits.size()) return {};
     return lobes;
-}
-
-void expect_parameters(const Parts& parts, std::size_t count, std::string_view form) {
-    if (parts.parameters.size() != count)
-        fail("kernel \"", parts.whole, "\": ", parts.parameters.size(), " parameters; write ", form);
 }
 
 /// Kernels without parameters.
@@ -145,16 +117,9 @@ constexpr std::array lobed_kernels{
     Lobed{"radial-lanczos", "", radial_lanczos},
 };
 
-std::optional<Kernel> with_parameters(const Parts& parts) {
+std::optional<Kernel> with_parameters(const NameParts& parts) {
     const auto take = [&](std::size_t count, std::string_view form) {
-        expect_parameters(parts, count, form);
-        std::vector<double> numbers;
-        for (const std::string_view word : parts.parameters) {
-            const auto value = parse_number(word);
-            if (!value) fail("kernel \"", parts.whole, "\": \"", word, "\" is no number; write ", form);
-            numbers.push_back(*value);
-        }
-        return numbers;
+        return number_parameters(parts, "kernel", count, form);
     };
     if (parts.head == "cubic") {
         const auto p = take(2, "cubic:B:C, as cubic:0.25:0.375");
@@ -180,13 +145,13 @@ Kernel parse_kernel(std::string_view name) {
     for (const Alias& a : aliases)
         if (a.word == name) name = a.meaning;
 
-    const Parts parts = split(name);
+    const NameParts parts = split_name(name);
     if (auto kernel = with_parameters(parts)) return *std::move(kernel);
     for (const Plain& k : plain_kernels)
-        if (k.name == parts.head) return expect_parameters(parts, 0, k.name), k.make();
+        if (k.name == parts.head) return expect_parameters(parts, "kernel", 0, k.name), k.make();
     for (const Lobed& k : lobed_kernels)
         if (const auto lobes = lobes_of(parts.head, k.prefix, k.suffix))
-            return expect_parameters(parts, 0, parts.head), k.make(*lobes);
+            return expect_parameters(parts, "kernel", 0, parts.head), k.make(*lobes);
     fail("kernel \"", name, "\" is unknown; choose one of: ", names());
 }
 

@@ -4,44 +4,15 @@
 #include <optional>
 #include <variant>
 
-#include "bandlimit/core/allocator.h"
 #include "bandlimit/resample/combine.h"
+#include "bandlimit/resample/row_loader.h"
+#include "bandlimit/resample/rows.h"
 #include "bandlimit/resample/sliding.h"
 
 namespace bandlimit {
 namespace {
 
 constexpr double strip_bytes = 1 << 20;  // of rows between source and output: half of a second cache of these days
-
-/// Rows of interleaved floats, side by side.
-class Rows {
-public:
-    Rows() = default;
-    Rows(int count, std::size_t length)
-        : pitch_((length + 15) / 16 * 16 + 16 * 9),  // no power of two: rows must not share places in a cache
-          samples_(static_cast<std::size_t>(count) * pitch_),
-          pointers_(static_cast<std::size_t>(count)) {
-        for (std::size_t i = 0; i < pointers_.size(); ++i) pointers_[i] = samples_.data() + i * pitch_;
-    }
-    float* operator[](int i) { return pointers_[static_cast<std::size_t>(i)]; }
-    Lines lines() const { return pointers_.data(); }
-
-    /// Rows [first, first + count) as an image.
-    View<float> view(int first, int count, int width, int channels) {
-        return {(*this)[first], width, count, channels, channels, static_cast<std::ptrdiff_t>(pitch_), 1};
-    }
-
-private:
-    std::size_t pitch_ = 0;
-    std::vector<float, SampleAllocator<float>> samples_;
-    std::vector<float*> pointers_;
-};
-
-/// Columns [first, first + width) of a view of any depth.
-template <class Any>
-Any columns_of(const Any& view, int first, int width) {
-    return std::visit([&](auto v) { return Any(cropped(v, first, 0, width, v.height)); }, view);
-}
 
 /// Computes the output columns of one strip in one thread; for radial kernels, of all.
 class FloatRun {
@@ -54,8 +25,7 @@ public:
           channels_(static_cast<std::size_t>(plan.channels)),
           width_(strip.read.end - strip.read.begin),
           outputs_(strip.outputs()),
-          inside_(part_inside(strip.read, plan.src.x.count)),
-          columns_(columns_of(source.samples, is_outside() ? 0 : inside_.begin, inside_.end - inside_.begin)),
+          loader_(source, strip.read, plan.src.y.count, plan.options.edge, plan.edge_y(), plan.options.premultiply),
           targets_(columns_of(target.samples, strip.first(), outputs_)),
           block_(rows_of_block(plan.channels)),
           out_(block_, length(outputs_)) {
@@ -86,13 +56,6 @@ public:
     }
 
 private:
-    /// The part of `read` that exists; empty, within `read`, where nothing does.
-    static IndexRange part_inside(IndexRange read, int count) {
-        const int begin = std::clamp(0, read.begin, read.end);
-        return {begin, std::clamp(count, begin, read.end)};
-    }
-    bool is_outside() const { return inside_.begin >= inside_.end; }
-
     std::size_t length(int width) const { return static_cast<std::size_t>(width) * channels_; }
     float antiring() const { return static_cast<float>(plan_.options.antiring); }
     bool premultiplied() const { return plan_.options.premultiply || source_.encoding.associated; }
@@ -114,7 +77,7 @@ private:
 
     /// Whether source rows are floats that need nothing but filtering.
     bool is_direct() const {
-        const auto* floats = std::get_if<View<const float>>(&columns_);
+        const auto* floats = std::get_if<View<const float>>(&loader_.inside());
         const Encoding& from = source_.encoding;
         return floats && floats->dx == plan_.channels && (floats->dc == 1 || plan_.channels == 1) &&
                from.transfer == Transfer::linear && (from.alpha < 0 || from.associated || !plan_.options.premultiply) &&
@@ -122,7 +85,7 @@ private:
     }
     const float* direct_row(int v) const {
         const int y = resolve(v, plan_.src.y.count, plan_.edge_y()) - source_.first_row;
-        return &std::get<View<const float>>(columns_)(0, y);
+        return &std::get<View<const float>>(loader_.inside())(0, y);
     }
 
     void filter_y(int first, int last, Rows& to, int width) {
@@ -151,37 +114,15 @@ private:
     /// Makes the rows of indices [v, v + count) in slots of the window.
     void fill(int v, int slot, int count) {
         if (!plan_.x_first) {
-            for (int i = 0; i < count; ++i) load(v + i, held_[slot + i]);
+            for (int i = 0; i < count; ++i) loader_.load(v + i, held_[slot + i]);
             return;
         }
         for (int done = 0; done < count; done += block_) {
             const int some = std::min(block_, count - done);
-            for (int i = 0; i < some; ++i) load(v + done + i, decoded_[i]);
+            for (int i = 0; i < some; ++i) loader_.load(v + done + i, decoded_[i]);
             filter_x(decoded_.view(0, some, width_, plan_.channels),
                      held_.view(slot + done, some, outputs_, plan_.channels));
         }
-    }
-
-    void load(int v, float* row) {
-        const int y = resolve(v, plan_.src.y.count, plan_.edge_y());
-        if (y < 0) return static_cast<void>(std::fill_n(row, length(width_), 0.0f));
-        float* const inside = row + length(inside_.begin - strip_.read.begin);
-        if (!is_outside()) decode(columns_, y, {inside, length(inside_.end - inside_.begin)});
-        for (int x = strip_.read.begin; x < inside_.begin; ++x) load_outside(x, y, row);
-        for (int x = inside_.end; x < strip_.read.end; ++x) load_outside(x, y, row);
-    }
-
-    void load_outside(int x, int y, float* row) {
-        const int from = resolve(x, plan_.src.x.count, plan_.options.edge);
-        float* const to = row + length(x - strip_.read.begin);
-        if (from < 0) std::fill_n(to, channels_, 0.0f);
-        else if (from >= inside_.begin && from < inside_.end)
-            std::copy_n(row + length(from - strip_.read.begin), channels_, to);
-        else decode(columns_of(source_.samples, from, 1), y, {to, channels_});
-    }
-
-    void decode(const AnyConstView& from, int y, std::span<float> row) const {
-        decode_row(from, y - source_.first_row, source_.encoding, plan_.options.premultiply, row);
     }
 
     bool store(int from, int i) {
@@ -199,8 +140,7 @@ private:
     const Strip& strip_;
     std::size_t channels_;
     int width_, outputs_;
-    IndexRange inside_;     ///< the source columns of the strip that exist
-    AnyConstView columns_;  ///< those
+    RowLoader loader_;
     AnyView targets_;
     int block_;  ///< output rows computed together
     SlidingWindow window_;

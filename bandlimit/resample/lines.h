@@ -14,6 +14,9 @@ struct IndexRange {
 };
 IndexRange indices_read(const Bank& bank, int first, int last);
 
+/// The smallest range of the `count` stored indices that holds all that `read` leads to.
+IndexRange stored_indices(IndexRange read, int count, Edge edge);
+
 /// A table of line pointers that may be indexed by any index in a range: edges cost one entry each, and no branch in
 /// the inner loop.
 class LineTable {

@@ -39,19 +39,6 @@ double cost(double step_first, double step_second) {
     return taps(step_first) / std::abs(step_first) + taps(step_second) / std::abs(step_first * step_second);
 }
 
-IndexRange stored(IndexRange read, int count, Edge edge) {
-    if (read.begin >= 0 && read.end <= count) return read;
-    if (edge == Edge::wrap || read.end - read.begin >= count) return {0, count};
-    IndexRange range{count, 0};
-    for (int v = read.begin; v < read.end; ++v) {
-        const int i = resolve(v, count, edge);
-        if (i < 0) continue;
-        range.begin = std::min(range.begin, i);
-        range.end = std::max(range.end, i + 1);
-    }
-    return range;
-}
-
 }  // namespace
 
 Kernel auto_kernel(const Axis& src, const Axis& dst) {
@@ -111,7 +98,7 @@ const std::string& Resizer::kernel_y() const { return plan_->kernel_y; }
 IndexRange Resizer::rows_needed(int first, int last) const {
     if (first < 0 || first >= last || last > plan_->dst.y.count)
         fail("Resizer::rows_needed: rows ", first, " to ", last, " of ", plan_->dst.y.count, "; pass a part of them");
-    return stored(plan_->rows_read(first, last), plan_->src.y.count, plan_->edge_y());
+    return stored_indices(plan_->rows_read(first, last), plan_->src.y.count, plan_->edge_y());
 }
 
 bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {

@@ -145,10 +145,12 @@ int rows_of_tile(int channels) {
 
 }  // namespace
 
-std::vector<TileRun> tile_runs(const Bank& bank) {
+std::vector<TileRun> tile_runs(const Bank& bank) { return tile_runs(bank, 0, bank.output_count()); }
+
+std::vector<TileRun> tile_runs(const Bank& bank, int first, int last) {
     const int fitting = static_cast<int>(tile_bytes / (tile_lanes * std::ptrdiff_t{sizeof(float)}));
     std::vector<TileRun> runs;
-    for (int i = 0; i < bank.output_count(); ++i) {
+    for (int i = first; i < last; ++i) {
         const IndexRange next = indices_read(bank, i, i + 1);
         if (!runs.empty()) {
             TileRun& run = runs.back();

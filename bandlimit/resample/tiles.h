@@ -17,6 +17,8 @@ struct TileRun {
     IndexRange read;
 };
 std::vector<TileRun> tile_runs(const Bank& bank);
+/// Of outputs [first, last) only.
+std::vector<TileRun> tile_runs(const Bank& bank, int first, int last);
 
 /// Runs the rows of src through the bank, by way of tiles of `runs`, which are some of tile_runs(bank).
 ///

@@ -2,7 +2,7 @@
 #pragma once
 #include <variant>
 
-#include "bandlimit/texture/fetches.h"
+#include "bandlimit/resample/term_filter.h"
 #include "bandlimit/texture/mips.h"
 
 namespace bandlimit {
