@@ -103,6 +103,19 @@ TEST(Mips, BandsOfRowsAndThreadsDoNotChangeATexel) {
     }
 }
 
+TEST(Mips, SayWhichValuesWereLost) {
+    // Both ways: by rows, and whole levels.
+    const Shell shell(BANDLIMIT_PROGRAM);
+    AnyImage image =
+        image_of<float>(9, 700, 1, [](int x, int y, int) { return x == 4 && y == 650 ? std::nanf("") : 0.5f; });
+    save(shell / "in.exr", image);
+    for (const std::string from : {"previous", "base"}) {
+        const std::string line = "mips in.exr out.ktx2 --role data --from " + from;
+        EXPECT_NE(shell(line + " --depth u8").err.find("in.exr holds NaN"), std::string::npos) << from;
+        EXPECT_EQ(shell(line).err.find("NaN"), std::string::npos) << from;  // halves or floats hold it
+    }
+}
+
 TEST(Mips, TexelsAreWhatPictureAndRoleNeed) {
     const Shell shell(BANDLIMIT_PROGRAM);
     AnyImage grey = noise(Depth::u8, 8, 8, 1), grey_alpha = noise(Depth::u8, 8, 8, 2), rgb = noise(Depth::u8, 8, 8, 3),
