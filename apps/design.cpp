@@ -65,6 +65,9 @@ void ship(const Design& d, const Options& o, const ShaderInfo& info) {
     note(fmt::format("{} shaders in {}", names.size(), o.emit_to));
 }
 
+/// What the functions of a design are called if nothing else is asked for: as what they do.
+std::string default_name(const std::string& kind) { return kind == "kernel" ? "sample_kernel" : kind; }
+
 void run(const Options& o, const std::string& command, const std::function<Design()>& make) {
     for (const std::string& path : {o.output, o.plot})
         if (!path.empty()) check_output_path(path);
@@ -72,7 +75,7 @@ void run(const Options& o, const std::string& command, const std::function<Desig
     if (!o.plot.empty()) draw(design.panels, o.plot, 420 * static_cast<int>(design.panels.size()), 380);
     if (!o.output.empty()) write_taps(o.output, design.file);
     if (o.emit || !o.emit_to.empty())
-        ship(design, o, {o.name.empty() ? design.file.kind : o.name, command, design.lines});
+        ship(design, o, {o.name.empty() ? default_name(design.file.kind) : o.name, command, design.lines});
     if (o.json) fmt::print("{}", taps_text(design.file));
     else if (!o.emit || !o.emit_to.empty()) print(design, o);
 }

@@ -9,7 +9,7 @@
 namespace bandlimit::app {
 
 std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& info, Dialect dialect) {
-    ShaderParts parts{.fetches = design.fetches};
+    ShaderParts parts{.fetches = design.fetches, .pieces = design.pieces};
     ShaderInfo named = info;
     if (!design.terms.empty()) {  // as high as the shape; what is pasted shall keep the brightness of pictures
         parts.terms = with_unit_sum(design.terms);
@@ -27,7 +27,7 @@ std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& inf
             parts.reads = fold(*design.taps);
         }
     }
-    if (parts.fetches.empty() && parts.reads.empty() && parts.terms.empty())
+    if (parts.fetches.empty() && parts.reads.empty() && parts.terms.empty() && parts.pieces.empty())
         throw UsageError(design.components.empty()
                              ? "--emit: this design has no weights that a shader could run; leave it out"
                              : "--emit: phasors become weights at a radius in pixels; add --radius PX");

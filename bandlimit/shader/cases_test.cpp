@@ -54,6 +54,9 @@ const Components& phasor() {
 
 Terms phasor_terms() { return with_unit_sum(separable_terms(phasor(), 4, 6)); }
 
+/// A parabola, then straight down to 0 at 2: not smooth, nor of sum 1 at every phase.
+KernelPieces two_pieces() { return {{0, 0.75, {1, 0, -0.5}}, {0.75, 2, {0.71875, -0.575}}}; }
+
 // ---- What they must return
 
 Expected sum_of_reads(const Fetches& reads, const Picture& picture, const Place& at) {
@@ -193,6 +196,7 @@ std::vector<Case> make_cases() {
         const Kernel k = parse_kernel(s.kernel);
         kernel(std::string(s.name).c_str(), [k](const Place& at) { return separable(at, k); });
     }
+    kernel("fitted", [k = piecewise_kernel(two_pieces(), "fitted")](const Place& at) { return separable(at, k); });
     kernel("sample_catmull_rom_5", without_corners);
     kernel("sample_jinc2", [](const Place& at) {
         return weighted(at, [](double dx, double dy) { return jinc2_by_table(dx * dx + dy * dy); });
@@ -217,7 +221,8 @@ std::string functions_of_all_cases(Dialect dialect) {
     std::string text = fetch_shader(few_reads(), {"few"}, dialect) + fetch_shader(many_reads(), {"many"}, dialect) +
                        separable_shader(line_reads(), {"line"}, dialect) +
                        low_rank_shader(pair_of_terms(), {"pair"}, dialect) +
-                       low_rank_shader(phasor_terms(), {"phasor"}, dialect) + load_shader(grid(), {"grid"}, dialect);
+                       low_rank_shader(phasor_terms(), {"phasor"}, dialect) + load_shader(grid(), {"grid"}, dialect) +
+                       pieces_shader(two_pieces(), {"fitted"}, dialect);
     for (const KernelShader& s : kernel_shaders()) text += kernel_shader(s.name, "a test", dialect);
     return text;
 }

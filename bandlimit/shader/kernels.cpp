@@ -165,6 +165,24 @@ constexpr std::string_view jinc2 = R"(
 }
 )";
 
+constexpr std::string_view pieces = R"(
+    let(float2, position) = uv / texel - 0.5;
+    let(float2, base) = floor(position);
+    var(float4, sum) = float4(0.0, 0.0, 0.0, 0.0);
+    var(float, total) = 0.0;
+    loop(y, FROM, TO, 1) {
+        let(float, weight_y) = NAME_weight(base.y + float(y) - position.y);
+        loop(x, FROM, TO, 1) {
+            let(float2, at) = base + float2(float(x), float(y));
+            let(float, weight) = weight_y * NAME_weight(at.x - position.x);
+            sum += weight * sample(source, source_sampler, (at + 0.5) * texel);
+            total += weight;
+        }
+    }
+    return sum / total;
+}
+)";
+
 constexpr std::string_view srgb = R"(function(float, srgb_from_linear_channel, in(float, v)) {
     return choose(v <= 0.0031308, 12.92 * v, 1.055 * pow(max(v, 0.0031308), 0.416666667) - 0.055);
 }
@@ -231,6 +249,26 @@ std::string jinc2_source() {
     return joined({table, ");\n\n", function_2d, body});
 }
 
+/// A polynomial of x - begin in Horner's form.
+std::string polynomial(const KernelPiece& piece) {
+    const std::string variable = piece.begin == 0 ? "x" : message("(x - ", number(piece.begin), ")");
+    const std::vector<double>& c = piece.coefficients;
+    std::string text = number(c.back());
+    for (std::size_t k = c.size() - 1; k-- > 0;) text = message(number(c[k]), " + ", variable, " * (", text, ")");
+    return text;
+}
+
+/// NAME_weight(distance): the piece under the distance.
+std::string weight_of(const KernelPieces& pieces) {
+    std::string value = "0.0";
+    for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece)
+        value =
+            message("choose(x < ", number(piece->end), ",\n        ", polynomial(*piece), ",\n        ", value, ")");
+    return "function(float, NAME_weight, in(float, distance)) {\n    let(float, x) = max(distance, -distance);\n"
+           "    return " +
+           value + ";\n}\n\n";
+}
+
 std::string source_of(std::string_view name) {
     const auto lanczos2 = [] {
         const std::string text = with(std::string(lanczos2_weights), "SINE_OF_TT", sine_over("tt"));
@@ -283,6 +321,21 @@ std::string kernel_shader(std::string_view name, const std::string& command, Dia
                         found->kernel.empty() ? Header::Reads::colours : Header::Reads::samples};
     const ShaderInfo info{std::string(name), command, {}};
     return shader_text(info, header, with(source_of(name), "NAME", name), dialect);
+}
+
+std::string pieces_shader(const KernelPieces& kernel, const ShaderInfo& info, Dialect dialect) {
+    constexpr double largest_radius = 16;
+    const double radius = piecewise_kernel(kernel, info.name).radius;
+    if (radius > largest_radius)
+        fail("pieces_shader: a kernel of radius ", radius, " reads too many texels; pass at most ", largest_radius);
+    const int reach = static_cast<int>(std::ceil(radius)), reads = 4 * reach * reach;
+    const Header header{"A kernel of polynomial pieces that reads a picture anywhere between its texels.",
+                        message(reads, " reads at centres of texels, and their weights, of ", kernel.size(),
+                                " polynomials along each axis"),
+                        Header::Reads::samples};
+    std::string source = joined({weight_of(kernel), function_2d, pieces});
+    source = with(with(source, "FROM", message(1 - reach)), "TO", message(reach + 1));
+    return shader_text(info, header, with(source, "NAME", info.name), dialect);
 }
 
 }  // namespace bandlimit

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "bandlimit/kernel/piecewise.h"
 #include "bandlimit/shader/shader.h"
 
 namespace bandlimit {
@@ -29,5 +30,13 @@ std::span<const KernelShader> kernel_shaders();
 /// error    of the weights: 3e-7 from rounding; sample_jinc2 1e-4 of the largest from its table
 /// throws   Error for another name
 std::string kernel_shader(std::string_view name, const std::string& command, Dialect dialect);
+
+/// A kernel of polynomial pieces: NAME(source, sampler, uv, texel), which weights the texels around uv by
+/// NAME_weight(distance) along each axis, and divides by the sum of these weights.
+///
+/// error    of the weights: about 1e-6 from rounding
+/// cost     a read per texel under the kernel, (2 ceil(radius))^2, and as many weights, of a polynomial per piece each
+/// throws   Error as piecewise_kernel(), for a radius over 16, and for a name that is no identifier
+std::string pieces_shader(const KernelPieces& pieces, const ShaderInfo& info, Dialect dialect);
 
 }  // namespace bandlimit

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/shader/kernels.h"
 #include "bandlimit/shader/text.h"
 
 namespace bandlimit {
@@ -270,7 +271,8 @@ std::vector<ShaderFile> shaders_of(const ShaderParts& parts, const ShaderInfo& i
         }
     }
     if (!parts.terms.empty()) add("_low_rank", low_rank_shader(parts.terms, info, dialect));
-    if (files.empty()) fail("shaders_of: the design has nothing to ship; pass fetches, reads, taps or terms");
+    if (!parts.pieces.empty()) add("", pieces_shader(parts.pieces, info, dialect));
+    if (files.empty()) fail("shaders_of: the design has nothing to ship; pass fetches, reads, taps, terms or pieces");
     return files;
 }
 

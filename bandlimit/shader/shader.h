@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bandlimit/kernel/fetches.h"
+#include "bandlimit/kernel/piecewise.h"
 #include "bandlimit/kernel/taps.h"
 #include "bandlimit/kernel/terms.h"
 #include "bandlimit/shader/dialect.h"
@@ -77,6 +78,7 @@ struct ShaderParts {
     std::vector<LinearRead> reads = {};  ///< separable_shader: the taps, folded
     Taps taps = {};                      ///< compute_shader, both ways, where it fits
     Terms terms = {};                    ///< low_rank_shader
+    KernelPieces pieces = {};            ///< pieces_shader, see kernels.h
 };
 
 /// The files of `parts` in one dialect: NAME.glsl with the functions of one kind, NAME_compute_horizontal.glsl, ... A

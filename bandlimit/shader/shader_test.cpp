@@ -107,7 +107,7 @@ TEST(Shader, FilesOfADesign) {
 }
 
 TEST(Shader, BadArgumentsAreRefused) {
-    for (const char* name : {"", "Blur", "2x", "a-b", "a__b", "gl_x", "x_", "a b"})
+    for (const char* name : {"", "Blur", "2x", "a-b", "a__b", "gl_x", "x_", "a b", "kernel", "for"})
         EXPECT_THROW(fetch_shader({{0, 0, 1}}, {name}, Dialect::glsl), Error) << name;
     EXPECT_THROW(fetch_shader({}, {"f"}, Dialect::glsl), Error);
     EXPECT_THROW(fetch_shader({{std::nan(""), 0, 1}}, {"f"}, Dialect::glsl), Error);

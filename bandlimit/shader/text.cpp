@@ -1,7 +1,9 @@
 #include "bandlimit/shader/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string_view>
 
 #include "bandlimit/core/error.h"
 
@@ -60,11 +62,20 @@ void describe_parameters(Header::Reads reads, Dialect dialect, std::string& out)
 }  // namespace
 
 void check_shader_name(const std::string& name) {
+    // Words of the neutral form, and of languages that it becomes.
+    constexpr std::array<std::string_view, 52> taken{
+        "float",  "float2",    "float3", "float4",   "int",     "int2",    "let",    "var",   "declare",
+        "table",  "structure", "field",  "function", "texture", "sampler", "in",     "loop",  "choose",
+        "sample", "load",      "tile",   "kernel",   "barrier", "store",   "source", "other", "uv",
+        "texel",  "floor",     "dot",    "min",      "max",     "clamp",   "sqrt",   "pow",   "main",
+        "out",    "inout",     "const",  "static",   "struct",  "return",  "if",     "else",  "for",
+        "while",  "do",        "switch", "void",     "bool",    "fn",      "vec4"};
     const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
     const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
     const bool plain = !name.empty() && lower(name.front()) && std::all_of(name.begin(), name.end(), allowed);
     // GLSL keeps double underscores and gl_ for itself.
-    if (!plain || name.find("__") != std::string::npos || name.ends_with('_') || name.starts_with("gl_"))
+    if (!plain || name.find("__") != std::string::npos || name.ends_with('_') || name.starts_with("gl_") ||
+        std::find(taken.begin(), taken.end(), name) != taken.end())
         fail("shader: \"", name,
              "\" is no name for a function; pass small letters, digits and single underscores, as blur_25");
 }

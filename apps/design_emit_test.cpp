@@ -1,0 +1,43 @@
+// bandlimit design --emit: what is printed and written; that it is right is shown where shaders are executed.
+#include <array>
+#include <set>
+
+#include "apps/run_program_test.h"
+
+namespace bandlimit {
+namespace {
+
+TEST(DesignEmit, PrintsWhatIsPastedAndHowItWasMade) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome soft = shell("design gaussian --sigma 2 --emit glsl --name soft --quiet");
+    ASSERT_TRUE(succeeds(soft));
+    EXPECT_EQ(soft.err, "");
+    for (const char* words : {"vec4 soft_horizontal(", "vec4 soft_vertical(",
+                              "Made by: bandlimit design gaussian --sigma 2 --emit glsl --name soft --quiet"})
+        EXPECT_NE(soft.out.find(words), std::string::npos) << words;
+    const Outcome disc = shell("design separable disc:9:1 --rank 2 --emit wgsl");
+    ASSERT_TRUE(succeeds(disc));
+    EXPECT_NE(disc.out.find("divided by their sum"), std::string::npos);
+}
+
+TEST(DesignEmit, WritesEveryLanguage) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    ASSERT_TRUE(succeeds(shell("design kernel --radius 2 --emit-to . --quiet")));
+    EXPECT_EQ(shell.files(), (std::set<std::string>{"sample_kernel.glsl", "sample_kernel.hlsl", "sample_kernel.wgsl",
+                                                    "sample_kernel.metal", "sample_kernel.slang", "sample_kernel.h"}));
+}
+
+TEST(DesignEmit, RefusesInOneLineAndWritesNothing) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    for (const auto& [arguments, word] : {std::pair{"gaussian --sigma 2 --emit glsl --name 2x", "2x"},
+                                          {"gaussian --sigma 2 --emit glsl --name kernel", "kernel"},
+                                          {"gaussian --sigma 2 --emit cobol", "glsl"},
+                                          {"gaussian --sigma 2 --emit glsl --json", "--emit-to"},
+                                          {"disk --emit glsl", "--radius"}})
+        EXPECT_TRUE(fails(2, shell(std::string("design ") + arguments), word)) << arguments;
+    EXPECT_TRUE(fails(1, shell("design gaussian --sigma 2 --emit-to none"), "none"));
+    EXPECT_TRUE(shell.files().empty());
+}
+
+}  // namespace
+}  // namespace bandlimit
