@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "apps/design.h"
+#include "apps/emit.h"
 #include "bandlimit/design/disk.h"
 
 namespace bandlimit::app {
@@ -22,7 +23,6 @@ struct Options {
 };
 
 /// Costs need a radius. This one stands in where none is given, in pixels.
-constexpr double usual_radius = 25;
 
 void check(const Options& o) {
     const bool is_published = o.preset == "published";
@@ -101,7 +101,7 @@ Design make(const Options& o) {
     file.components = disk.components;
     file.error = disk_error(disk.components);
     file.radius = o.radius > 0 ? o.radius : 1;  // without weights it is the unit of components
-    const double radius = o.radius > 0 ? o.radius : usual_radius;
+    const double radius = o.radius > 0 ? o.radius : usual_disk_radius;
     const int reach = o.reach >= 0      ? o.reach
                       : disk.reach >= 0 ? static_cast<int>(std::lround(disk.reach * radius))
                                         : reach_for(disk.components, radius);

@@ -18,6 +18,9 @@ TEST(DesignEmit, PrintsWhatIsPastedAndHowItWasMade) {
     const Outcome disc = shell("design separable disc:9:1 --rank 2 --emit wgsl");
     ASSERT_TRUE(succeeds(disc));
     EXPECT_NE(disc.out.find("divided by their sum"), std::string::npos);
+    const Outcome lens = shell("design disk --components 1 --emit hlsl");
+    ASSERT_TRUE(succeeds(lens));
+    EXPECT_NE(lens.out.find("radius of 25 pixels"), std::string::npos);
 }
 
 TEST(DesignEmit, WritesEveryLanguage) {
@@ -32,8 +35,7 @@ TEST(DesignEmit, RefusesInOneLineAndWritesNothing) {
     for (const auto& [arguments, word] : {std::pair{"gaussian --sigma 2 --emit glsl --name 2x", "2x"},
                                           {"gaussian --sigma 2 --emit glsl --name kernel", "kernel"},
                                           {"gaussian --sigma 2 --emit cobol", "glsl"},
-                                          {"gaussian --sigma 2 --emit glsl --json", "--emit-to"},
-                                          {"disk --emit glsl", "--radius"}})
+                                          {"gaussian --sigma 2 --emit glsl --json", "--emit-to"}})
         EXPECT_TRUE(fails(2, shell(std::string("design ") + arguments), word)) << arguments;
     EXPECT_TRUE(fails(1, shell("design gaussian --sigma 2 --emit-to none"), "none"));
     EXPECT_TRUE(shell.files().empty());

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/common.h"
+#include "bandlimit/core/error.h"
 #include "bandlimit/design/fold.h"
 #include "bandlimit/io/atomic_file.h"
 
@@ -11,8 +12,14 @@ namespace bandlimit::app {
 std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& info, Dialect dialect) {
     ShaderParts parts{.fetches = design.fetches, .pieces = design.pieces};
     ShaderInfo named = info;
-    if (!design.terms.empty()) {  // as high as the shape; what is pasted shall keep the brightness of pictures
-        parts.terms = with_unit_sum(design.terms);
+    parts.terms = design.terms;
+    if (parts.terms.empty() && !design.components.empty()) {
+        parts.terms =
+            separable_terms(design.components, usual_disk_radius, reach_for(design.components, usual_disk_radius));
+        named.notes.push_back(message("For a radius of ", usual_disk_radius, " pixels; --radius PX is for others."));
+    }
+    if (!parts.terms.empty()) {  // as high as the shape; what is pasted shall keep the brightness of pictures
+        parts.terms = with_unit_sum(parts.terms);
         named.notes.push_back("Weights below are divided by their sum.");
     }
     if (design.taps) {
@@ -28,9 +35,7 @@ std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& inf
         }
     }
     if (parts.fetches.empty() && parts.reads.empty() && parts.terms.empty() && parts.pieces.empty())
-        throw UsageError(design.components.empty()
-                             ? "--emit: this design has no weights that a shader could run; leave it out"
-                             : "--emit: phasors become weights at a radius in pixels; add --radius PX");
+        throw UsageError("--emit: this design has no weights that a shader could run; leave it out");
     return bandlimit::shaders_of(parts, named, dialect);
 }
 

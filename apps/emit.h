@@ -8,8 +8,11 @@
 
 namespace bandlimit::app {
 
+/// Of the disc that phasors stand for, in pixels, where nobody says otherwise.
+constexpr double usual_disk_radius = 25;
+
 /// The files of `design` in one dialect: functions first, then whole compute shaders. Terms are scaled
-/// to a sum of 1.
+/// to a sum of 1; phasors without terms become those of usual_disk_radius.
 ///
 /// throws   UsageError for a design without anything that a shader could run
 std::vector<ShaderFile> shaders_of(const TapsFile& design, const ShaderInfo& info, Dialect dialect);
