@@ -42,6 +42,11 @@ void treat_alpha_as_asked(Space space, bool premultiply, int source_alpha, bool 
     to.alpha = premultiply ? target_alpha : -1;
 }
 
+void note_foreign_profile(const std::string& file, const ImageInfo& in, Space space) {
+    if (in.has_foreign_profile && space == Space::automatic)
+        note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", file));
+}
+
 CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply) {
     return verb
         ->add_option_function<std::string>(
@@ -85,8 +90,7 @@ void filter_picture(const PictureOptions& o, const std::function<PictureFilter(c
     double plan = 0;
     PictureFilter filter = watch.time(plan, [&] { return make(in); });
     require_memory(filter.memory, fmt::format("{} {} x {} pixels", filter.rows.doing, in.width, in.height));
-    if (in.has_foreign_profile && o.space == Space::automatic)
-        note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", o.in));
+    note_foreign_profile(o.in, in, o.space);
 
     ImageWriter writer(o.out, target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();

@@ -16,6 +16,10 @@ Transfer output_transfer(Space space, const ImageInfo& in, const FormatAbilities
 void treat_alpha_as_asked(Space space, bool premultiply, int source_alpha, bool associated, int target_alpha,
                           Encoding& from, Encoding& to);
 
+/// Says how the colours of `file` are taken that has an ICC profile other than sRGB; nothing of others, or where the
+/// user has said what its codes mean.
+void note_foreign_profile(const std::string& file, const ImageInfo& in, Space space);
+
 /// Adds --alpha.
 CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply);
 

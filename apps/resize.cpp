@@ -213,8 +213,7 @@ void run(const Options& o) {
                    target_axis(region.y, region.height, size.height, o.centers)};
     const Output out = output_of(o, reader, size);
     const Resizer resizer = make_resizer(o, src, dst, in.channels(), options);
-    if (in.has_foreign_profile && o.space == Space::automatic)
-        note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", o.in));
+    note_foreign_profile(o.in, in, o.space);
 
     ImageWriter writer(o.out, out.target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
