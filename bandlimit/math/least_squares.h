@@ -30,9 +30,9 @@ public:
 
     /// The solution; the shortest one where several are equally good.
     ///
-    /// method   the null space of the equalities; what is free by a rank-revealing orthogonal decomposition;
-    /// inequalities
-    ///          as a least-distance problem, solved by non-negative least squares
+    /// method   the null space of the equalities; what is free by a rank-revealing orthogonal decomposition; limits as
+    /// a
+    ///          least-distance problem, solved by non-negative least squares
     /// error    conditions are met to about 1e-13 of the size of their terms
     /// cost     (rows + conditions) unknowns^2, and as much again per inequality that holds with equality
     /// throws   Error if the conditions contradict each other, and for inequalities together with rows that leave
