@@ -75,9 +75,10 @@ void Page::figure(const std::string& file, const std::string& sentence, const st
 
 void Page::gallery(const std::vector<Tile>& tiles, const std::string& sentence, const std::string& command, int width) {
     body_ += "<figure><div class=\"tiles\">";
+    // A caption is no wider than its picture, so that it does not change how many stand side by side.
     for (const Tile& tile : tiles)
-        body_ += fmt::format("<div><img src=\"{}\" width=\"{}\" alt=\"{}\">{}</div>", tile.file, width,
-                             escaped(tile.caption), escaped(tile.caption));
+        body_ += fmt::format("<div style=\"max-width: {1}px\"><img src=\"{0}\" width=\"{1}\" alt=\"{2}\">{2}</div>",
+                             tile.file, width, escaped(tile.caption));
     body_ += "</div>";
     caption(sentence, command);
 }

@@ -36,6 +36,42 @@ void write_weights(const std::string& path, const WeightGrid& grid, int zoom) {
     write_data(path, image.view());
 }
 
+/// A photograph at night: dark, and with small lamps in many colours, up to some hundred times as bright as white.
+Image<float> night(View<const float> day) {
+    Image<float> image(day.width, day.height, 3, Layout::interleaved);
+    const View<float> v = image.view();
+    for (int y = 0; y < day.height; ++y)
+        for (int x = 0; x < day.width; ++x)
+            for (int c = 0; c < 3; ++c) v(x, y, c) = 0.08f * day(x, y, c) * (c == 2 ? 1.5f : 1);
+    Random random(11);
+    constexpr int lamps = 60;
+    for (int i = 0; i < lamps; ++i) {
+        const int left = random.integer(0, day.width - 3), top = random.integer(0, day.height - 3);
+        const double bright = std::exp2(random.uniform(3, 8));
+        const std::array<double, 3> tint{random.uniform(0.5, 1), random.uniform(0.25, 0.9), random.uniform(0.1, 0.8)};
+        for (int y = top; y < top + 3; ++y)
+            for (int x = left; x < left + 3; ++x)
+                for (int c = 0; c < 3; ++c)
+                    v(x, y, c) += static_cast<float>(bright * tint[static_cast<std::size_t>(c)]);
+    }
+    return image;
+}
+
+Image<float> night_of_coffee(const Tour& tour) {
+    return night(read_picture(tour.path("coffee.png"), Space::automatic, tour.parallel).view());
+}
+
+/// `image` blurred by weights that are scaled to a sum of 1.
+Image<float> blurred(const Tour& tour, const Image<float>& image, const Terms& weights) {
+    const Terms unit = with_unit_sum(weights);
+    const TermFilter filter(unit, centred_first(static_cast<int>(unit[0].row.size())),
+                            centred_first(static_cast<int>(unit[0].column.size())), image.width(), image.height(),
+                            Edge::reflect, Edge::reflect, false);
+    Image<float> result(image.width(), image.height(), image.channels(), Layout::interleaved);
+    filter.run({AnyConstView(image.view()), 0, {}}, {AnyView(result.view()), 0, {}, {}}, tour.parallel);
+    return result;
+}
+
 void reads_part(Tour& tour) {
     tour.page.section(
         "Halving in few reads",
@@ -96,7 +132,7 @@ void rank_part(Tour& tour) {
         tiles.push_back({file, fmt::format("rank {}", rank)});
     }
     const std::string command = fmt::format("bandlimit design separable {} --rank 4", circle);
-    tour.page.gallery(tiles, "The circle of 50 x 50 weights. Darker than the ground is negative.", command, 200);
+    tour.page.gallery(tiles, "The circle of 50 x 50 weights. Darker than the ground is negative.", command, 170);
     tour.page.table(rows, "Singular values as published.", command);
     tour.page.headline("singular values of the 50 x 50 circle", rows[1][1] + "; rank " + rows[1][2]);
 }
@@ -111,13 +147,18 @@ void loss_part(Tour& tour) {
     const WeightGrid shape = parse_shape(circle);
     const Terms start = low_rank(shape, 4);
     std::vector<std::vector<std::string>> rows{{"non-negative", "keep-zeros", "loss before", "loss"}};
-    std::vector<Page::Tile> tiles;
+    std::vector<Page::Tile> tiles, blurs;
+    const Image<float> lights = night_of_coffee(tour);
     for (const double non_negative : {0.0, 0.5, 1.5}) {
         for (const double keep_zeros : {0.0, 0.3, 0.8}) {
             const SeparableFit fit = optimise_separable(shape, start, {non_negative, keep_zeros});
             const std::string file = fmt::format("circle-{}-{}.png", non_negative, keep_zeros);
             write_weights(tour.path(file), expanded(fit.terms), 4);
-            tiles.push_back({file, fmt::format("loss {:.5f}", fit.loss)});
+            const std::string caption = fmt::format("keep-zeros {}, non-negative {}", keep_zeros, non_negative);
+            tiles.push_back({file, fmt::format("{}: loss {:.5f}", caption, fit.loss)});
+            const std::string blur = fmt::format("night-{}-{}.png", non_negative, keep_zeros);
+            write_picture(tour.path(blur), blurred(tour, lights, fit.terms).view());
+            blurs.push_back({blur, caption});
             rows.push_back({fmt::format("{}", non_negative), fmt::format("{}", keep_zeros),
                             fmt::format("{:.5f}", fit.start_loss), fmt::format("{:.5f}", fit.loss)});
             if (non_negative == 0.5 && keep_zeros == 0.3)
@@ -127,7 +168,12 @@ void loss_part(Tour& tour) {
     }
     const std::string command =
         fmt::format("bandlimit design separable {} --rank 4 --optimise --keep-zeros 0.3 --non-negative 0.5", circle);
-    tour.page.gallery(tiles, "The circle at rank 4.", command, 200);
+    tour.page.gallery(tiles, "The circle at rank 4.", command, 256);
+    tour.page.gallery(
+        blurs,
+        "The same on a photograph at night, with lamps: what is negative makes dark dots, what leaks makes "
+        "plaid around the lamps.",
+        command + " -o circle.json\nbandlimit convolve night.exr night.png --taps circle.json", 256);
     tour.page.table(rows, "What is minimised, at the nearest kernel of rank 4 and after.", command);
 }
 
@@ -149,42 +195,10 @@ void disk_part(Tour& tour) {
                                          [&](double r) { return value_at(fit, r); }));
     }
     const std::string command = "bandlimit design disk --components 2 --plot disk.svg";
-    tour.page.figure(tour.plot("disk.svg", {panel}, 640, 400), "Fitted by least squares over the plane.", command, 640);
+    tour.page.figure(tour.plot("disk.svg", {panel}, 760, 400), "Fitted by least squares over the plane.", command, 760);
     tour.page.table(rows, "The error is the integral of (K - disc)^2 over that of disc^2.", command);
     tour.page.headline("error of a disc out of 1 / 2 / 3 phasors",
                        rows[1][1] + " / " + rows[2][1] + " / " + rows[3][1]);
-}
-
-/// A photograph at night: dark, and with small lamps in many colours, up to some hundred times as bright as white.
-Image<float> night(View<const float> day) {
-    Image<float> image(day.width, day.height, 3, Layout::interleaved);
-    const View<float> v = image.view();
-    for (int y = 0; y < day.height; ++y)
-        for (int x = 0; x < day.width; ++x)
-            for (int c = 0; c < 3; ++c) v(x, y, c) = 0.08f * day(x, y, c) * (c == 2 ? 1.5f : 1);
-    Random random(11);
-    constexpr int lamps = 60;
-    for (int i = 0; i < lamps; ++i) {
-        const int left = random.integer(0, day.width - 3), top = random.integer(0, day.height - 3);
-        const double bright = std::exp2(random.uniform(3, 8));
-        const std::array<double, 3> tint{random.uniform(0.5, 1), random.uniform(0.25, 0.9), random.uniform(0.1, 0.8)};
-        for (int y = top; y < top + 3; ++y)
-            for (int x = left; x < left + 3; ++x)
-                for (int c = 0; c < 3; ++c)
-                    v(x, y, c) += static_cast<float>(bright * tint[static_cast<std::size_t>(c)]);
-    }
-    return image;
-}
-
-/// `image` blurred by weights that are scaled to a sum of 1.
-Image<float> blurred(const Tour& tour, const Image<float>& image, const Terms& weights) {
-    const Terms unit = with_unit_sum(weights);
-    const TermFilter filter(unit, centred_first(static_cast<int>(unit[0].row.size())),
-                            centred_first(static_cast<int>(unit[0].column.size())), image.width(), image.height(),
-                            Edge::reflect, Edge::reflect, false);
-    Image<float> result(image.width(), image.height(), image.channels(), Layout::interleaved);
-    filter.run({AnyConstView(image.view()), 0, {}}, {AnyView(result.view()), 0, {}, {}}, tour.parallel);
-    return result;
 }
 
 void bokeh_part(Tour& tour) {
@@ -195,7 +209,7 @@ void bokeh_part(Tour& tour) {
         "show on bright lights: low rank leaves squares and corners of negative weight, few phasors leave "
         "rings.",
         low_rank_source);
-    const Image<float> lights = night(read_picture(tour.path("coffee.png"), Space::automatic, tour.parallel).view());
+    const Image<float> lights = night_of_coffee(tour);
     write_picture(tour.path("night.exr"), lights.view(), Depth::f16);
     const WeightGrid disc = parse_shape("disc:1", 2 * radius + 1);
     const Image<float> exact =

@@ -84,5 +84,12 @@ TEST(LowRank, RefusesRanksAndSharesThatDoNotExist) {
     EXPECT_EQ(rank_for_energy(std::vector<double>{0, 0}, 0.5), 1);
 }
 
+TEST(NumericalRank, CountsWhatIsSmallAndNotWhatIsRounding) {
+    // 8 * 2^-52 is 1.8e-15.
+    EXPECT_EQ(numerical_rank(std::vector{1.0, 1e-6, 1e-12, 1e-16}, 8, 8), 3);
+    EXPECT_EQ(numerical_rank(std::vector{1e-20, 1e-34}, 2, 8), 2);
+    EXPECT_EQ(numerical_rank(std::vector{0.0, 0.0}, 2, 2), 0);
+}
+
 }  // namespace
 }  // namespace bandlimit
