@@ -73,32 +73,35 @@ function(bandlimit_component name)
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bandlimit COMPONENT ${name})
 endfunction()
 
-# The program: the file `bandlimit` at the root of the build directory.
+# The program: the file `bandlimit` at the root of the build directory. All of it but main() is the library
+# bandlimit_app, so that the tests run verbs in their own process.
 function(bandlimit_program)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*.cpp)
-    list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
-    if(NOT sources)
-        return()
-    endif()
+    list(FILTER sources EXCLUDE REGEX "_test\\.cpp$|/main\\.cpp$")
     find_package(CLI11 REQUIRED)
     find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
     find_library(XXHASH_LIBRARY xxhash REQUIRED)
-    add_executable(bandlimit ${sources})
-    target_link_libraries(bandlimit PRIVATE
-        bandlimit::core bandlimit::design bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
-    target_include_directories(bandlimit SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
-    target_compile_definitions(bandlimit PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
+    add_library(bandlimit_app STATIC ${sources})
+    target_link_libraries(bandlimit_app
+        PUBLIC bandlimit::core
+        PRIVATE bandlimit::design bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
+    target_include_directories(bandlimit_app SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
+    target_compile_definitions(bandlimit_app PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
     # Every verb includes both, and they take longer to read than the verbs.
-    target_precompile_headers(bandlimit PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
+    target_precompile_headers(bandlimit_app PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
     include(BandlimitEmbed)
     file(GLOB photographs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*.png)
-    bandlimit_embed_photographs(bandlimit ${photographs})
-    bandlimit_options(bandlimit)
-    if(BANDLIMIT_FUZZ)
-        # Nothing runs it there: it is built to see that Clang takes it.
-        target_compile_options(bandlimit PRIVATE -O0 -fno-sanitize=all)
-    endif()
-    target_compile_options(bandlimit PRIVATE ${BANDLIMIT_PROGRAM_OPTIONS})
+    bandlimit_embed_photographs(bandlimit_app ${photographs})
+    add_executable(bandlimit ${PROJECT_SOURCE_DIR}/apps/main.cpp)
+    target_link_libraries(bandlimit PRIVATE bandlimit_app)
+    foreach(target IN ITEMS bandlimit_app bandlimit)
+        bandlimit_options(${target})
+        if(BANDLIMIT_FUZZ)
+            # Nothing runs it there: it is built to see that Clang takes it.
+            target_compile_options(${target} PRIVATE -O0 -fno-sanitize=all)
+        endif()
+        target_compile_options(${target} PRIVATE ${BANDLIMIT_PROGRAM_OPTIONS})
+    endforeach()
     install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()
 
@@ -128,24 +131,20 @@ function(bandlimit_room_tests)
     endforeach()
 endfunction()
 
-# The tests of the program, one test program per apps/*_test.cpp. Each gets the path of the program under test
-# (BANDLIMIT_PROGRAM) and of the files that ship with the project (BANDLIMIT_EXAMPLES).
+# The tests of the program, one test program of all apps/*_test.cpp. They run verbs in their own process, and where the
+# process matters start the program (BANDLIMIT_PROGRAM); BANDLIMIT_EXAMPLES are the files that ship with the project.
 function(bandlimit_app_tests)
     if(NOT TARGET bandlimit)
         return()
     endif()
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*_test.cpp)
-    foreach(source IN LISTS sources)
-        cmake_path(GET source STEM name)
-        string(REGEX REPLACE "_test$" "" name ${name})
-        bandlimit_test_program(app_${name} apps ${source})
-        target_link_libraries(test_app_${name} PRIVATE bandlimit::core bandlimit::io nlohmann_json::nlohmann_json)
-        target_compile_definitions(test_app_${name} PRIVATE
-            BANDLIMIT_PROGRAM="$<TARGET_FILE:bandlimit>" BANDLIMIT_EXAMPLES="${PROJECT_SOURCE_DIR}/examples")
-        # They start the program and compare what it wrote: that takes less time than making them faster.
-        target_compile_options(test_app_${name} PRIVATE -O0)
-        add_dependencies(test_app_${name} bandlimit)
-    endforeach()
+    bandlimit_test_program(apps apps ${sources})
+    target_link_libraries(test_apps PRIVATE bandlimit_app bandlimit::io nlohmann_json::nlohmann_json)
+    target_compile_definitions(test_apps PRIVATE
+        BANDLIMIT_PROGRAM="$<TARGET_FILE:bandlimit>" BANDLIMIT_EXAMPLES="${PROJECT_SOURCE_DIR}/examples")
+    # They run the program and compare what it wrote: that takes less time than making them faster.
+    target_compile_options(test_apps PRIVATE -O0)
+    add_dependencies(test_apps bandlimit)
 endfunction()
 
 # "consumer: core alone" installs core, and only core, and builds and runs a small project against it.
