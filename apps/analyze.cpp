@@ -429,6 +429,12 @@ Subject read_subject(const Options& o) {
     TapsFile file = read_taps(o.kernel);
     if (is_kernel(file)) return kernel_of(file, o.kernel);
     if (file.fetches.empty() && file.terms.empty()) taps_of(file, o.kernel);
+    constexpr double most = 1 << 22;  // as many as fetches may spread over
+    if (!file.taps && file.fetches.empty() && size_of(file.terms).count() > most)
+        throw std::runtime_error(
+            fmt::format("{}: its terms stand for {} x {} weights, and analyze lists at most {}; "
+                        "name shorter ones",
+                        o.kernel, size_of(file.terms).width, size_of(file.terms).height, most));
     if (!o.phase.empty() || !o.at.empty())
         throw UsageError("analyze: --phase and --at are for kernels; taps have one phase, and no values in between");
     return file;

@@ -47,6 +47,10 @@ void check(const Options& o) {
         throw UsageError(
             "the command must hold {width} and {height}, or {scale}, for what size to make; write it as "
             "'program {in} --size {width}x{height} {out}'");
+    if (holds("{out}."))
+        throw UsageError(
+            "{out} is a whole file name and has its extension already; write nothing behind it, and choose "
+            "another extension by --format");
     check_output_format("x." + o.format, o.depth);
     if (!(o.timeout > 0))
         throw UsageError(fmt::format("--timeout: {} is no time to run in; pass seconds above 0", o.timeout));
@@ -75,16 +79,19 @@ Image<float> read_stored(const std::string& path, int threads) {
 /// A resizer that writes files, runs the command on them and reads what it wrote.
 class CommandResizer {
 public:
-    CommandResizer(const Options& o, AuditSubject& subject, std::string folder)
-        : o_(o), subject_(subject), folder_(std::move(folder)) {}
+    /// Commands run in `folder`, and get the paths of files as long as these are plain, else their names in it: no
+    /// shell takes either apart.
+    CommandResizer(const Options& o, AuditSubject& subject, const std::string& folder)
+        : o_(o), subject_(subject), folder_(folder), place_(is_plain(folder) ? folder + "/" : "") {}
 
     Image<float> operator()(View<const float> stored, int width, int height) {
-        const std::string number = fmt::format("{}/{:02}", folder_, ++runs_);
-        const std::string in = number + "-in." + o_.format, out = number + "-out." + o_.format;
+        const std::string number = fmt::format("{:02}", ++runs_);
+        const std::string in_name = number + "-in." + o_.format, out_name = number + "-out." + o_.format;
+        const std::string in = folder_ + "/" + in_name, out = folder_ + "/" + out_name;
         write(in, stored);
         const std::string scale = fmt::format("{:.17g}", double(width) / stored.width);
-        const CommandEnd end = run_command(filled_in(o_.command, {{"in", in},
-                                                                  {"out", out},
+        const CommandEnd end = run_command(filled_in(o_.command, {{"in", place_ + in_name},
+                                                                  {"out", place_ + out_name},
                                                                   {"width", std::to_string(width)},
                                                                   {"height", std::to_string(height)},
                                                                   {"scale", scale}}),
@@ -184,7 +191,7 @@ private:
 
     const Options& o_;
     AuditSubject& subject_;
-    std::string folder_;
+    std::string folder_, place_;
     int runs_ = 0;
 };
 
@@ -232,7 +239,7 @@ void add_audit(Program& program) {
     verb->add_option(
             "COMMAND", o->command,
             "One line for /bin/sh, run in a temporary folder, where {in}, {out}, {width}, {height} and {scale}\n"
-            "are replaced: it must read the picture {in} and write it at the new size to {out}")
+            "are replaced, in quotes or not: it must read the picture {in} and write it at the new size to {out}")
         ->required();
     verb->add_option("--scales", o->scales,
                      "Scales to test, between commas: ratios of numbers up to 128, from 1/8 to 8;\n"

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "apps/common.h"
 #include "bandlimit/core/file_error.h"
+#include "bandlimit/io/regular_file.h"
 
 namespace bandlimit::app {
 namespace {
@@ -19,7 +19,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 using Setting = std::function<void(MipsRecipe&)>;
 
-constexpr std::uintmax_t most_bytes = 16 << 20;
+constexpr std::uint64_t most_bytes = 16 << 20;
 constexpr int deepest = 16;
 
 std::string lower(std::string_view text) {
@@ -185,17 +185,13 @@ Rule read_rule(const json& object, const fs::path& folder, const std::string& na
 }
 
 json parse(const std::string& path) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(path, error);
-    if (error) fail_file(path, "cannot be read: ", error.message(), "; name a file of rules");
-    if (bytes > most_bytes) fail_file(path, "has more than 16 MB; name a file of rules");
-    std::ifstream file(path);
+    const std::string text = read_text(path, most_bytes, "a file of rules");
     const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
         if (depth > deepest) fail_file(path, "is nested deeper than ", deepest, " levels; name a file of rules");
         return true;
     };
     try {
-        return json::parse(file, limit_depth);
+        return json::parse(text, limit_depth);
     } catch (const json::exception& e) {
         fail_file(path, "is no JSON: ", e.what(), "; name a file of rules");
     }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/io/signals.h"
 
 namespace bandlimit::app {
 namespace {
@@ -38,7 +39,7 @@ void remove_tree(const char* path) noexcept {
     if (child > 0) ::waitpid(child, nullptr, 0);
 }
 
-bool is_plain(char c) {
+bool needs_no_quotes(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::strchr("./-_+,:@%=", c) != nullptr;
 }
@@ -91,8 +92,10 @@ std::string search_path() {
 
 TemporaryFolder::TemporaryFolder() {
     std::error_code error;
-    const std::filesystem::path place = std::filesystem::temp_directory_path(error);
+    std::filesystem::path place = std::filesystem::temp_directory_path(error);
+    if (!error) place = std::filesystem::absolute(place, error);  // commands run elsewhere
     path_ = ((error ? std::filesystem::path("/tmp") : place) / "bandlimit-XXXXXX").string();
+    const BlockedSignals blocked;  // until the handler knows what to remove
     if (path_.size() >= folder_to_remove.size() || !::mkdtemp(path_.data()))
         throw std::runtime_error(message("a temporary folder cannot be made as ", path_, " (", std::strerror(errno),
                                          "); set TMPDIR to a folder that you may write to"));
@@ -106,10 +109,16 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 std::string quoted(const std::string& word) {
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+    if (!word.empty() && std::all_of(word.begin(), word.end(), needs_no_quotes)) return word;
     std::string out = "'";
     for (const char c : word) c == '\'' ? out += "'\\''" : out += c;
     return out + "'";
+}
+
+bool is_plain(const std::string& path) {
+    return std::all_of(path.begin(), path.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::strchr("./-_", c);
+    });
 }
 
 std::string filled_in(const std::string& command, const std::map<std::string, std::string>& values) {
@@ -122,7 +131,7 @@ std::string filled_in(const std::string& command, const std::map<std::string, st
             out += command[i++];
             continue;
         }
-        out += quoted(found->second);
+        out += found->second;
         i += found->first.size() + 2;
     }
     return out;
@@ -138,17 +147,17 @@ CommandEnd run_command(const std::string& command, const std::string& folder, do
 
     const auto start = Clock::now();
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    // A signal that ends the program waits until its handler knows what to kill.
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    const pid_t child = ::fork();
-    if (child == 0) become(command.c_str(), folder.c_str(), out.c_str(), err.c_str(), variables.data(), before);
-    if (child > 0) {
-        ::setpgid(child, child);  // here and in the child: whoever comes first
-        running_group = child;
+    pid_t child = -1;
+    {
+        const BlockedSignals blocked;  // until the handler knows what to kill
+        child = ::fork();
+        if (child == 0)
+            become(command.c_str(), folder.c_str(), out.c_str(), err.c_str(), variables.data(), blocked.before());
+        if (child > 0) {
+            ::setpgid(child, child);  // here and in the child: whoever comes first
+            running_group = child;
+        }
     }
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (child < 0) throw std::runtime_error(message("no process can be started (", std::strerror(errno), ")"));
     CommandEnd end;
     int status = 0;

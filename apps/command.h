@@ -23,7 +23,12 @@ private:
 /// `word` as the shell reads it back: in quotes where it holds more than letters, digits and ./-_+:,@%= .
 std::string quoted(const std::string& word);
 
-/// `command` with each {name} replaced by its value, quoted(). Other braces stay.
+/// Whether `path` holds only letters, digits and ./-_ , which mean themselves wherever a command may hold them: in
+/// quotes of any kind, and in text for other interpreters.
+bool is_plain(const std::string& path);
+
+/// `command` with each {name} replaced by its value, as it is: values should be numbers or is_plain(). Other braces
+/// stay.
 std::string filled_in(const std::string& command, const std::map<std::string, std::string>& values);
 
 /// What a command did.

@@ -273,8 +273,8 @@ void make_by_rows(const MipsJob& job, const TexelFormat& texels, const MipOption
     ImageReader reader(job.inputs.front(), shares.codecs.threads);
     const ImageInfo& info = reader.info();
     const MipsStreamReport stream =
-        stream_texture(reader, encoding_of_image(info, options.role, job.recipe.space), texels, options, job.output,
-                       *container_of_path(job.output), shares.stages, job.shows_progress);
+        stream_texture(reader, encoding_of_image(info, options.role, job.recipe.space), texels, options, job.is_array,
+                       job.output, *container_of_path(job.output), shares.stages, job.shows_progress);
     TextureShape shape{texels, info.width, info.height};
     shape.levels = options.levels > 0 ? options.levels : mip_count(info.width, info.height);
     describe(shape, job, {}, report);

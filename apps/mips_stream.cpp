@@ -57,7 +57,7 @@ int largest_need(const MipStream& stream) {
 }  // namespace
 
 MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, const TexelFormat& texels,
-                                const MipOptions& options, const std::string& path, Container container,
+                                const MipOptions& options, bool is_array, const std::string& path, Container container,
                                 Parallel parallel, bool shows_progress) {
     const ImageInfo& in = reader.info();
     MipStream stream(in.width, in.height, in.channels(), in.depth, stored, texels, options, parallel);
@@ -65,7 +65,8 @@ MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, con
     require_memory(SourceBands::bytes(in, source_rows),
                    "making the levels of " + std::to_string(in.width) + " x " + std::to_string(in.height) + " texels");
     SourceBands source(reader, source_rows);
-    const TextureShape shape{texels, in.width, in.height, stream.levels()};
+    const TextureShape shape{
+        .format = texels, .width = in.width, .height = in.height, .levels = stream.levels(), .is_array = is_array};
     const ContainerPlan plan = plan_container(shape, container);
     AtomicFile file(path);
     LevelRows levels(shape, plan, file);

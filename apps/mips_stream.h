@@ -15,14 +15,14 @@ struct MipsStreamReport {
 };
 
 /// Makes the levels of the picture in `reader`, whose codes mean `stored`, where MipStream::is_possible(), and writes
-/// them to `path` as `container`, with a progress bar if asked for. While rows are filtered, the next are read, unless
-/// `parallel` is one thread.
+/// them to `path` as `container`, an array of one layer or none, with a progress bar if asked for. While rows are
+/// filtered, the next are read, unless `parallel` is one thread.
 ///
 /// memory   some 500 rows of the picture and 200 of each level as floats: 200 MB where it is 65536 texels wide; all
 ///          rows of all levels under Edge::wrap along y
 /// throws   what reader, MipStream and AtomicFile throw. The file appears whole or not at all
 MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, const TexelFormat& texels,
-                                const MipOptions& options, const std::string& path, Container container,
+                                const MipOptions& options, bool is_array, const std::string& path, Container container,
                                 Parallel parallel, bool shows_progress);
 
 }  // namespace bandlimit::app

@@ -11,34 +11,39 @@
 namespace bandlimit::app {
 namespace {
 
-/// By --rank, --exact and --fft, of which the command line has one at most; else as `chosen` has them.
-ConvolutionWeights approximated(const ChosenWeights& chosen, int rank) {
-    if (rank == 0) return chosen.weights;
-    const WeightGrid grid = grid_of(chosen.weights);
-    if (rank > std::min(grid.width, grid.height))
+/// By --rank, --exact and --fft, of which the command line has one at most; else as they are.
+ConvolutionWeights approximated(ConvolutionWeights weights, int rank, const std::string& name) {
+    if (rank == 0) return weights;
+    const WeightSize size = size_of(weights);
+    if (rank > std::min(size.width, size.height))
         throw std::runtime_error(
-            fmt::format("--rank {}: {} has {} x {} weights, whose rank is at most {}; pass that or less", rank,
-                        chosen.name, grid.width, grid.height, std::min(grid.width, grid.height)));
-    return {low_rank(grid, rank), chosen.weights.first_x, chosen.weights.first_y};
+            fmt::format("--rank {}: {} has {} x {} weights, whose rank is at most {}; pass that or less", rank, name,
+                        size.width, size.height, std::min(size.width, size.height)));
+    constexpr double most = 1 << 22;  // as many as fetches may spread over
+    if (size.count() > most)
+        throw std::runtime_error(fmt::format("--rank {}: {} has {} x {} weights, too many to take apart; leave it out",
+                                             rank, name, size.width, size.height));
+    return {low_rank(grid_of(weights), rank), weights.first_x, weights.first_y};
 }
 
 /// Rows of a band: its first ones do anew what they share with the band before.
 int rows_worth_a_band(int taps) { return std::max(64, 8 * taps); }
 
-std::string line_of(const MethodCost& cost, const WeightGrid& grid) {
+std::string line_of(const MethodCost& cost, WeightSize size) {
     const std::string terms =
         cost.method == Method::low_rank ? fmt::format(" of {} products", cost.rank) : std::string();
-    return fmt::format("{} x {} weights, {}{}, {:.0f} multiply-adds per sample", grid.width, grid.height,
+    return fmt::format("{} x {} weights, {}{}, {:.0f} multiply-adds per sample", size.width, size.height,
                        name_of(cost.method), terms, cost.multiply_adds);
 }
 
 nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWeights& chosen,
-                                 const ConvolutionWeights& weights, const WeightGrid& grid, double sum, Edge edge) {
+                                 const ConvolutionWeights& weights, double sum, Edge edge) {
     const MethodCost& cost = convolution.chosen();
     // Few products may run directly all the same, where that is cheaper.
     const auto* terms = std::get_if<Terms>(&weights.weights);
     const int rank = terms ? static_cast<int>(terms->size()) : cost.rank;
-    nlohmann::ordered_json report{{"weights", {{"of", chosen.name}, {"width", grid.width}, {"height", grid.height}}},
+    const WeightSize size = size_of(weights);
+    nlohmann::ordered_json report{{"weights", {{"of", chosen.name}, {"width", size.width}, {"height", size.height}}},
                                   {"sum", sum},
                                   {"method", name_of(cost.method)},
                                   {"rank", rank > 0 ? nlohmann::ordered_json(rank) : nullptr},
@@ -53,13 +58,14 @@ nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWei
 }
 
 /// What is said once of weights that have no middle sample.
-void note_shift(const WeightGrid& grid, const ConvolutionWeights& weights) {
-    const double x = weights.first_x + (grid.width - 1) / 2.0, y = weights.first_y + (grid.height - 1) / 2.0;
+void note_shift(const ConvolutionWeights& weights) {
+    const WeightSize size = size_of(weights);
+    const double x = weights.first_x + (size.width - 1) / 2.0, y = weights.first_y + (size.height - 1) / 2.0;
     if (x == 0 && y == 0) return;
     note(
         fmt::format("the middle of the {} x {} weights lies {:g}, {:g} pixels from the pixel that they make: the "
                     "picture moves by {:g}, {:g}",
-                    grid.width, grid.height, x, y, -x, -y));
+                    size.width, size.height, x, y, -x, -y));
 }
 
 }  // namespace
@@ -105,37 +111,35 @@ WeightGrid read_weights(const std::string& path) {
 
 PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, const ConvolutionChoice& choice,
                                  const PictureOptions& o, const ImageInfo& in) {
-    ConvolutionWeights weights = approximated(chosen, choice.rank);
-    const WeightGrid grid = grid_of(weights);
+    ConvolutionWeights weights = approximated(std::move(chosen.weights), choice.rank, chosen.name);
     const double sum = sum_of(weights);
-    double magnitude = 0;
-    for (const double w : grid.weights) magnitude += std::abs(w);
-    const bool cancels = !(std::abs(sum) > 1e-9 * magnitude);
+    const bool cancels = cancel(weights);
     if (!choice.keeps_sum) {
         if (cancels)
             throw std::runtime_error(fmt::format(
                 "{}: the weights sum to {:.3g} and cannot be divided by that; add --keep-sum", chosen.name, sum));
         weights = with_unit_sum(std::move(weights));
     }
-    ConvolveOptions options{.method = choice.method(), .premultiply = o.premultiplies()};
+    ConvolveOptions options{
+        .method = choice.method(), .premultiply = o.premultiplies(), .most_bytes = available_memory()};
     // What sums to 0 has nothing to renormalize to.
     options.edge_x = options.edge_y = o.edge.value_or(cancels ? Edge::reflect : Edge::renormalize);
-    note_shift(grid, weights);
+    note_shift(weights);
     const auto convolution = std::make_shared<const Convolution>(weights, in.width, in.height, options);
     PictureFilter filter;
     filter.rows = {verb,
                    verb == "bokeh" ? "blurring" : "convolving",
                    [convolution](int first, int last) { return convolution->rows_needed(first, last); },
                    {},
-                   rows_worth_a_band(grid.height)};
+                   rows_worth_a_band(size_of(weights).height)};
     filter.rows.run = [convolution, gamma = chosen.gamma, premultiply = options.premultiply](
                           const SourceRows& source, const TargetRows& target, Parallel parallel) {
         if (gamma == 1) return convolution->run(source, target, parallel);
         return run_boosted(*convolution, gamma, premultiply, source, target, parallel);
     };
     filter.memory = convolution->bytes(in.channels(), o.parallel);
-    filter.line = line_of(convolution->chosen(), grid);
-    filter.report = report_of(*convolution, chosen, weights, grid, choice.keeps_sum ? sum : 1, options.edge_x);
+    filter.line = line_of(convolution->chosen(), size_of(weights));
+    filter.report = report_of(*convolution, chosen, weights, choice.keeps_sum ? sum : 1, options.edge_x);
     return filter;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
@@ -11,7 +10,7 @@
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
 #include "bandlimit/io/image_file.h"
-#include "bandlimit/io/probe.h"
+#include "bandlimit/io/regular_file.h"
 
 namespace bandlimit::app {
 namespace {
@@ -28,7 +27,7 @@ struct Content {
 Content read_content(const std::string& path, std::uint64_t most, std::uint64_t copies) {
     const File file = open_regular(path);
     Content content;
-    content.file_length = std::filesystem::file_size(path);
+    content.file_length = length_of(file);
     content.length = std::min(most, content.file_length);
     require_memory(content.length * copies, path);
     content.bytes = std::make_unique_for_overwrite<std::byte[]>(content.length);
@@ -40,11 +39,14 @@ Content read_content(const std::string& path, std::uint64_t most, std::uint64_t 
 }  // namespace
 
 std::optional<Container> container_of_file(const std::string& path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return {};  // opening a pipe would wait for its writer
-    const File file(std::fopen(path.c_str(), "rb"));
+    File file;
+    try {
+        file = open_regular(path);
+    } catch (const std::runtime_error&) {
+        return {};  // whoever reads it as an image says why
+    }
     std::array<std::byte, 16> start{};
-    const std::size_t length = file ? std::fread(start.data(), 1, start.size(), file.get()) : 0;
+    const std::size_t length = std::fread(start.data(), 1, start.size(), file.get());
     return container_of_bytes(std::span(start).first(length));
 }
 

@@ -1,6 +1,7 @@
 // Weights in two dimensions, run over images in the cheapest way that there is.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -34,14 +35,18 @@ struct ConvolutionWeights {
 /// `weights` centred on their output, see centred_first().
 ConvolutionWeights centred(std::variant<WeightGrid, Terms> weights);
 
-/// All of them on a grid. Throws Error as expanded().
+/// How many they are along each axis. Throws Error for none, as size_of(terms).
+WeightSize size_of(const ConvolutionWeights& weights);
+/// All of them on a grid, which for products takes more memory by far. Throws as size_of().
 WeightGrid grid_of(const ConvolutionWeights& weights);
 /// Their sum: what becomes of a picture of ones.
 double sum_of(const ConvolutionWeights& weights);
 /// The same weights, turned by half a turn: what convolution in the textbook's sense runs.
 ConvolutionWeights turned(ConvolutionWeights weights);
+/// Whether their sum is nothing to divide by: below 1e-9 of that of their magnitudes, or of those of their products.
+bool cancel(const ConvolutionWeights& weights);
 /// The same, divided by their sum.
-/// throws   Error where they cancel: a sum below 1e-9 of that of their magnitudes
+/// throws   Error where they cancel()
 ConvolutionWeights with_unit_sum(ConvolutionWeights weights);
 
 struct ConvolveOptions {
@@ -49,6 +54,8 @@ struct ConvolveOptions {
     Edge edge_x = Edge::renormalize, edge_y = Edge::renormalize;
     /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Without an alpha channel no matter.
     bool premultiply = true;
+    /// Memory for what is worked out before a convolution runs, above which it is refused.
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// What a method would take.
@@ -57,6 +64,7 @@ struct MethodCost {
     int rank = 0;              ///< products of separable and low_rank
     double multiply_adds = 0;  ///< per sample
     double time = 0;           ///< relative, as measured: 1 is a multiply-add of the direct method, per sample
+    double bytes = 0;          ///< about what is worked out before it runs
 };
 
 /// A convolution ready to run on blocks of rows. Approximations are not its business: low_rank() makes products that
@@ -68,7 +76,7 @@ struct MethodCost {
 class Convolution {
 public:
     /// throws  Error for empty weights or such as are not finite, width or height < 1, Method::separable for weights
-    ///         that are no product, and as BorderScale
+    ///         that are no product, for what takes more than options.most_bytes, and as BorderScale
     Convolution(const ConvolutionWeights& weights, int width, int height, const ConvolveOptions& options = {});
 
     /// What was chosen.

@@ -71,10 +71,16 @@ TEST(AtomicFile, VanishesWithoutCommit) {
 
 TEST(AtomicFile, UnfinishedOnesAreRemovedOnCall) {
     const Folder folder;
-    write_text(folder / "done.txt", "done");
-    AtomicFile a(folder / "a.txt"), b(folder / "b.txt");
-    EXPECT_EQ(folder.count(), 3);
-    remove_unfinished_files();
+    EXPECT_EXIT(
+        {
+            write_text(folder / "done.txt", "done");
+            AtomicFile a(folder / "a.txt");
+            AtomicFile b(folder / "b.txt");
+            const auto before = folder.count();
+            remove_unfinished_files();
+            ::_exit(before == 3 ? 7 : 8);
+        },
+        ::testing::ExitedWithCode(7), "");
     EXPECT_EQ(folder.count(), 1);
     EXPECT_EQ(bytes_of(folder / "done.txt"), "done");
 }

@@ -142,7 +142,8 @@ std::uint64_t available_memory();
 /// Throws std::runtime_error with `what` if `bytes` exceed the memory that this machine has available.
 void require_memory(std::uint64_t bytes, const std::string& what);
 
-/// Removes the unfinished files of this process. Safe to call from a signal handler.
+/// Removes the unfinished files of this process, which is to end: a thread that wants to make another one waits for
+/// that. Safe to call from a signal handler.
 void remove_unfinished_files() noexcept;
 
 }  // namespace bandlimit

@@ -219,7 +219,10 @@ ImageWriter::State::State(const std::string& path_to_write, const ImageTarget& w
         proxy_.emplace(path, *file_);
         output_->set_ioproxy(&*proxy_);
     }
-    guarded([&] { return output_->open(is_tiff_ ? file_->unfinished() : path, spec_of(target, format)); });
+    guarded([&] {
+        const FileMaking making;
+        return output_->open(is_tiff_ ? file_->unfinished() : path, spec_of(target, format));
+    });
     target.metadata = nullptr;  // the caller may drop it now
 }
 

@@ -1,23 +1,16 @@
 #include "bandlimit/io/probe.h"
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <span>
-#include <system_error>
 #include <utility>
 
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/oiio.h"
+#include "bandlimit/io/regular_file.h"
 
 namespace bandlimit {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string text_of(int error) { return std::generic_category().message(error); }
 
 /// Reads two big-endian bytes; -1 at the end of the file.
 int read_u16(std::FILE* file) {
@@ -104,21 +97,6 @@ std::uint64_t expansion_of(std::string_view compression) {
 
 }  // namespace
 
-File open_regular(const std::string& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) {
-        if (error && error != std::errc::no_such_file_or_directory)
-            fail_file(path, "cannot be read: ", error.message(), "; check the path and its permissions");
-        fail_file(path, "does not exist; check the path");
-    }
-    if (fs::is_directory(status)) fail_file(path, "is a directory; name an image file");
-    if (!fs::is_regular_file(status)) fail_file(path, "is a device or a pipe; name an image file");
-    File file(std::fopen(path.c_str(), "rb"));
-    if (!file) fail_file(path, "cannot be read: ", text_of(errno), "; check its permissions");
-    return file;
-}
-
 Probe probe(const std::string& path) {
     const File file = open_regular(path);
     std::array<unsigned char, 32> head{};
@@ -129,8 +107,7 @@ Probe probe(const std::string& path) {
     found.format = format_of(std::span(head).first(size), path);
     if (found.format.empty())
         fail_file(path, "is no image that can be read; PNG, JPEG, TIFF, EXR, HDR, PNM, PFM, WebP, BMP and TGA can");
-    std::error_code error;
-    found.bytes = fs::file_size(path, error);
+    found.bytes = length_of(file);
 
     constexpr std::size_t png_interlace = 28;  // signature, chunk head, sizes, depth, colour type, two methods
     found.is_interlaced = found.format == "png" && size > png_interlace && head[png_interlace] != 0;

@@ -1,20 +1,9 @@
 // What can be known of a file before a codec sees it. Not for callers.
 #pragma once
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 
 namespace bandlimit {
-
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-/// Opens for reading what exists, is a regular file and may be read.
-///
-/// throws   std::runtime_error, with the path, for anything else
-File open_regular(const std::string& path);
 
 /// A file that exists, is regular, can be read and begins like an image.
 struct Probe {

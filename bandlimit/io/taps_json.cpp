@@ -3,16 +3,13 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include <nlohmann/json.hpp>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
+#include "bandlimit/io/regular_file.h"
 
 namespace bandlimit {
 namespace {
@@ -24,7 +21,7 @@ constexpr int largest_factor = 4096;
 constexpr int largest_first = 1'000'000;
 constexpr std::size_t most_weights = 65'536;
 constexpr std::size_t most_terms = 64, most_components = 16, most_pieces = 64;
-constexpr std::uintmax_t most_bytes = 16 << 20;
+constexpr std::uint64_t most_bytes = 16 << 20;
 constexpr int deepest = 16;  // braces and brackets around anything in such a file
 
 /// `value` as an integer in [low, high]; `what` names it in the error.
@@ -168,18 +165,7 @@ TapsFile parse_taps(std::string_view text, const std::string& name) {
     return file;
 }
 
-TapsFile read_taps(const std::string& path) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) fail_file(path, "does not exist or cannot be reached; check the path");
-    if (!fs::is_regular_file(status)) fail_file(path, "is no regular file; name a taps.json");
-    if (fs::file_size(path, error) > most_bytes) fail_file(path, "has more than 16 MB; name a taps.json");
-    std::ifstream in(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in) fail_file(path, "cannot be read; check its permissions");
-    return parse_taps(text, path);
-}
+TapsFile read_taps(const std::string& path) { return parse_taps(read_text(path, most_bytes, "a taps.json"), path); }
 
 const Taps& taps_of(const TapsFile& file, const std::string& name) {
     if (!file.taps)

@@ -157,7 +157,7 @@ TEST(TapsJson, FilesThatCannotBeReadOrWritten) {
     EXPECT_TRUE(fails_for(
         missing, [&] { read_taps(missing); }, "does not exist"));
     EXPECT_TRUE(fails_for(
-        folder / "", [&] { read_taps(folder / ""); }, "no regular file"));
+        folder / "", [&] { read_taps(folder / ""); }, "a directory"));
     EXPECT_TRUE(fails_for(
         nowhere, [&] { write_taps(nowhere, example()); }, "create it"));
     TapsFile file = example();

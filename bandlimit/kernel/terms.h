@@ -33,7 +33,18 @@ struct Term {
 /// units    out(i, j) = sum_xy weight(x, y) in(i + first_x + x, j + first_y + y)
 using Terms = std::vector<Term>;
 
-/// The weights that `terms` are the sum of. Throws Error for no terms, empty ones, or lengths that differ.
+/// How many weights there are along each axis.
+struct WeightSize {
+    int width = 0, height = 0;
+
+    double count() const { return double(width) * height; }
+};
+
+/// Those of the grid that `terms` stand for. Throws Error for no terms, empty ones, or lengths that differ.
+WeightSize size_of(const Terms& terms);
+
+/// The weights that `terms` are the sum of. Throws Error as size_of().
+/// cost     memory of width * height numbers, though terms have width + height
 WeightGrid expanded(const Terms& terms);
 
 /// The sum of all weights of `terms`: their gain for what is constant. Cost: linear in the weights of columns and rows.

@@ -28,11 +28,26 @@ std::vector<int> numbered(const std::vector<Key>& keys, const Key& ordinary, std
     return numbers;
 }
 
-/// The weights of an output at x that are inside, as indices.
-std::pair<int, int> part_inside(int x, int first, int weights, int count, Edge edge) {
-    if (edge != Edge::renormalize) return {0, weights};
-    const int begin = std::clamp(-(x + first), 0, weights);
-    return {begin, std::clamp(count - (x + first), begin, weights)};
+/// The weights of each of `count` outputs that are inside, as indices.
+std::vector<std::pair<int, int>> parts_inside(int first, int weights, int count, Edge edge) {
+    std::vector<std::pair<int, int>> parts;
+    for (int x = 0; x < count; ++x) {
+        const bool drops = edge == Edge::renormalize;
+        const int begin = drops ? std::clamp(-(x + first), 0, weights) : 0;
+        parts.emplace_back(begin, drops ? std::clamp(count - (x + first), begin, weights) : weights);
+    }
+    return parts;
+}
+
+double magnitude_of(const std::vector<double>& weights) {
+    return std::accumulate(weights.begin(), weights.end(), 0.0, [](double s, double w) { return s + std::abs(w); });
+}
+
+/// Sums of the first 0, 1, 2, ... weights.
+std::vector<double> sums_from_first(const std::vector<double>& weights) {
+    std::vector<double> sums(weights.size() + 1);
+    std::partial_sum(weights.begin(), weights.end(), sums.begin() + 1);
+    return sums;
 }
 
 /// Sums over rectangles that begin at the first weight.
@@ -73,9 +88,8 @@ void BorderScale::fill(double whole, double magnitude, const std::vector<int>& e
 
 BorderScale::BorderScale(const WeightGrid& weights, int first_x, int first_y, int width, int height, Edge edge_x,
                          Edge edge_y) {
-    std::vector<std::pair<int, int>> inside_x, inside_y;
-    for (int x = 0; x < width; ++x) inside_x.push_back(part_inside(x, first_x, weights.width, width, edge_x));
-    for (int y = 0; y < height; ++y) inside_y.push_back(part_inside(y, first_y, weights.height, height, edge_y));
+    const auto inside_x = parts_inside(first_x, weights.width, width, edge_x);
+    const auto inside_y = parts_inside(first_y, weights.height, height, edge_y);
     std::vector<int> example_x, example_y;
     kind_x_ = numbered(inside_x, {0, weights.width}, example_x);
     kind_y_ = numbered(inside_y, {0, weights.height}, example_y);
@@ -84,12 +98,38 @@ BorderScale::BorderScale(const WeightGrid& weights, int first_x, int first_y, in
         return sums[static_cast<std::size_t>(y) * (static_cast<std::size_t>(weights.width) + 1) +
                     static_cast<std::size_t>(x)];
     };
-    const double magnitude = std::accumulate(weights.weights.begin(), weights.weights.end(), 0.0,
-                                             [](double s, double w) { return s + std::abs(w); });
-    fill(sums.back(), magnitude, example_x, example_y, [&](int x, int y) {
+    fill(sums.back(), magnitude_of(weights.weights), example_x, example_y, [&](int x, int y) {
         const auto [x0, x1] = inside_x[static_cast<std::size_t>(x)];
         const auto [y0, y1] = inside_y[static_cast<std::size_t>(y)];
         return corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0);
+    });
+}
+
+BorderScale::BorderScale(const Terms& terms, int first_x, int first_y, int width, int height, Edge edge_x,
+                         Edge edge_y) {
+    const WeightSize size = size_of(terms);
+    const auto inside_x = parts_inside(first_x, size.width, width, edge_x);
+    const auto inside_y = parts_inside(first_y, size.height, height, edge_y);
+    std::vector<int> example_x, example_y;
+    kind_x_ = numbered(inside_x, {0, size.width}, example_x);
+    kind_y_ = numbered(inside_y, {0, size.height}, example_y);
+    std::vector<std::vector<double>> sums_x, sums_y;
+    double whole = 0, magnitude = 0;
+    for (const Term& term : terms) {
+        sums_x.push_back(sums_from_first(term.row));
+        sums_y.push_back(sums_from_first(term.column));
+        whole += sums_x.back().back() * sums_y.back().back();
+        magnitude += magnitude_of(term.row) * magnitude_of(term.column);
+    }
+    const auto sum_of = [](const std::vector<double>& sums, std::pair<int, int> part) {
+        return sums[static_cast<std::size_t>(part.second)] - sums[static_cast<std::size_t>(part.first)];
+    };
+    fill(whole, magnitude, example_x, example_y, [&](int x, int y) {
+        double sum = 0;
+        for (std::size_t t = 0; t < terms.size(); ++t)
+            sum += sum_of(sums_x[t], inside_x[static_cast<std::size_t>(x)]) *
+                   sum_of(sums_y[t], inside_y[static_cast<std::size_t>(y)]);
+        return sum;
     });
 }
 

@@ -22,6 +22,10 @@ public:
     /// throws  Error for weights that sum to 0, and where those inside do, in either case to 1e-6 of their magnitudes
     BorderScale(const WeightGrid& weights, int first_x, int first_y, int width, int height, Edge edge_x, Edge edge_y);
 
+    /// The same of a sum of products, in memory for their columns and rows, not for the weights that they stand for.
+    /// cost    a number per kind of output, each of which takes as many multiply-adds as there are terms
+    BorderScale(const Terms& terms, int first_x, int first_y, int width, int height, Edge edge_x, Edge edge_y);
+
     /// Of a sum of products, whose sums along x and y are given for each output: inside_x[output][term].
     /// whole[term] are the two sums of each term where nothing is dropped. Throws as above.
     BorderScale(std::span<const std::pair<double, double>> whole, const std::vector<std::vector<double>>& inside_x,

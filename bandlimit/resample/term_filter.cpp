@@ -17,10 +17,11 @@
 namespace bandlimit {
 namespace {
 
-constexpr int block = 16;                // output rows computed together: their windows overlap
-constexpr double strip_bytes = 1 << 20;  // of lines between source and output: half of a second cache of these days
-constexpr int least_columns = 32;        // of a strip: less would be more edge than strip
-constexpr int chunk = 64;                // floats: four vectors of 512 bits, all that one step of combine() takes
+constexpr int block = 16;                  // output rows computed together: their windows overlap
+constexpr double strip_bytes = 1 << 20;    // of lines between source and output: half of a second cache of these days
+constexpr double most_expanded = 1 << 22;  // weights that are written out to sum them: 32 MiB
+constexpr int least_columns = 32;          // of a strip: less would be more edge than strip
+constexpr int chunk = 64;                  // floats: four vectors of 512 bits, all that one step of combine() takes
 
 /// The sums of weights per output that drop nothing but what lies outside, by which BorderScale rescales.
 std::vector<std::vector<double>> sums_inside(std::span<const BankTerm> terms, Bank BankTerm::*bank,
@@ -133,7 +134,9 @@ TermFilter::TermFilter(const Terms& terms, int first_x, int first_y, int width, 
       edge_y_(edge_y),
       premultiply_(premultiply) {
     check(terms, width, height);
-    border_ = BorderScale(expanded(terms), first_x, first_y, width, height, edge_x, edge_y);
+    border_ = size_of(terms).count() <= most_expanded
+                  ? BorderScale(expanded(terms), first_x, first_y, width, height, edge_x, edge_y)
+                  : BorderScale(terms, first_x, first_y, width, height, edge_x, edge_y);
     taps_x_ = static_cast<int>(terms[0].row.size());
     shared_x_.inputs = taps_x_;
     Terms columns;

@@ -44,7 +44,7 @@ std::optional<Container> container_of_bytes(std::span<const std::byte> bytes) {
 }
 
 void check_container(Container container, const TexelFormat& format) {
-    const NamedFormat* const named = container == Container::ktx2 ? ktx2_format(format) : dds_format(format);
+    const NumberedFormat* const named = container == Container::ktx2 ? ktx2_format(format) : dds_format(format);
     if (named != nullptr) return;
     fail("check_container: ", container == Container::ktx2 ? "KTX2" : "DDS", " has no ", format.channels,
          " channels of ", format.srgb ? "sRGB " : "", name_of(format.depth),

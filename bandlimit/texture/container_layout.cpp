@@ -52,7 +52,7 @@ void read_rows(const std::byte* from, const ContainerLayout& layout, Image<T>& i
 }
 
 template <class Predicate>
-const NamedFormat* find_if(std::span<const NamedFormat> formats, Predicate is_it) {
+const NumberedFormat* find_if(std::span<const NumberedFormat> formats, Predicate is_it) {
     const auto found = std::find_if(formats.begin(), formats.end(), is_it);
     return found == formats.end() ? nullptr : &*found;
 }
@@ -65,17 +65,17 @@ StoredTexels stored_texels(std::string_view order, Depth depth, bool srgb) {
     return {{.channels = channels, .depth = depth, .srgb = srgb}, std::string(order)};
 }
 
-const NamedFormat* find_format(std::span<const NamedFormat> formats, std::uint32_t number) {
-    return find_if(formats, [&](const NamedFormat& f) { return f.number == number; });
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, std::uint32_t number) {
+    return find_if(formats, [&](const NumberedFormat& f) { return f.number == number; });
 }
 
-const NamedFormat* find_format(std::span<const NamedFormat> formats, const StoredTexels& stored) {
-    return find_if(formats, [&](const NamedFormat& f) {
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, const StoredTexels& stored) {
+    return find_if(formats, [&](const NumberedFormat& f) {
         return f.order == stored.order && f.depth == stored.format.depth && f.srgb == stored.format.srgb;
     });
 }
 
-const NamedFormat* find_format(std::span<const NamedFormat> formats, const TexelFormat& format) {
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, const TexelFormat& format) {
     const std::string_view order = channel_letters.substr(0, static_cast<std::size_t>(format.channels));
     return find_format(formats, stored_texels(order, format.depth, format.srgb));
 }

@@ -11,6 +11,10 @@
 
 namespace bandlimit {
 
+/// What is said of texels that are not read.
+inline constexpr std::string_view advice_for_texels =
+    "which are not read; convert it to 8 or 16 bits, half or float, uncompressed";
+
 /// How a file stores texels.
 struct StoredTexels {
     TexelFormat format;  ///< what they are read as
@@ -21,20 +25,19 @@ struct StoredTexels {
 /// Texels whose channels lie in `order`: R, R and G, or R, G and B with A or without, which then is opaque.
 StoredTexels stored_texels(std::string_view order, Depth depth, bool srgb = false);
 
-/// A texel format of a graphics interface.
-struct NamedFormat {
+/// A texel format that a graphics interface has a number for.
+struct NumberedFormat {
     std::uint32_t number;
-    std::string_view name;
     std::string_view order;  ///< as StoredTexels
     Depth depth;
     bool srgb = false;
 };
 /// The one of `formats` with this number; null if there is none.
-const NamedFormat* find_format(std::span<const NamedFormat> formats, std::uint32_t number);
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, std::uint32_t number);
 /// The first whose texels lie as `stored`.
-const NamedFormat* find_format(std::span<const NamedFormat> formats, const StoredTexels& stored);
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, const StoredTexels& stored);
 /// The first for texels of `format` in the order of their channels.
-const NamedFormat* find_format(std::span<const NamedFormat> formats, const TexelFormat& format);
+const NumberedFormat* find_format(std::span<const NumberedFormat> formats, const TexelFormat& format);
 
 /// All that a header says.
 struct ContainerLayout {

@@ -7,30 +7,22 @@
 #include <optional>
 
 #include "bandlimit/core/file_error.h"
+#include "bandlimit/texture/format_names.h"
 
 namespace bandlimit {
 namespace {
 
 // By DXGI_FORMAT.
 constexpr std::array formats{
-    NamedFormat{2, "DXGI_FORMAT_R32G32B32A32_FLOAT", "RGBA", Depth::f32},
-    NamedFormat{6, "DXGI_FORMAT_R32G32B32_FLOAT", "RGB", Depth::f32},
-    NamedFormat{10, "DXGI_FORMAT_R16G16B16A16_FLOAT", "RGBA", Depth::f16},
-    NamedFormat{11, "DXGI_FORMAT_R16G16B16A16_UNORM", "RGBA", Depth::u16},
-    NamedFormat{16, "DXGI_FORMAT_R32G32_FLOAT", "RG", Depth::f32},
-    NamedFormat{28, "DXGI_FORMAT_R8G8B8A8_UNORM", "RGBA", Depth::u8},
-    NamedFormat{29, "DXGI_FORMAT_R8G8B8A8_UNORM_SRGB", "RGBA", Depth::u8, true},
-    NamedFormat{34, "DXGI_FORMAT_R16G16_FLOAT", "RG", Depth::f16},
-    NamedFormat{35, "DXGI_FORMAT_R16G16_UNORM", "RG", Depth::u16},
-    NamedFormat{41, "DXGI_FORMAT_R32_FLOAT", "R", Depth::f32},
-    NamedFormat{49, "DXGI_FORMAT_R8G8_UNORM", "RG", Depth::u8},
-    NamedFormat{54, "DXGI_FORMAT_R16_FLOAT", "R", Depth::f16},
-    NamedFormat{56, "DXGI_FORMAT_R16_UNORM", "R", Depth::u16},
-    NamedFormat{61, "DXGI_FORMAT_R8_UNORM", "R", Depth::u8},
-    NamedFormat{87, "DXGI_FORMAT_B8G8R8A8_UNORM", "BGRA", Depth::u8},
-    NamedFormat{88, "DXGI_FORMAT_B8G8R8X8_UNORM", "BGRX", Depth::u8},
-    NamedFormat{91, "DXGI_FORMAT_B8G8R8A8_UNORM_SRGB", "BGRA", Depth::u8, true},
-    NamedFormat{93, "DXGI_FORMAT_B8G8R8X8_UNORM_SRGB", "BGRX", Depth::u8, true},
+    NumberedFormat{2, "RGBA", Depth::f32},       NumberedFormat{6, "RGB", Depth::f32},
+    NumberedFormat{10, "RGBA", Depth::f16},      NumberedFormat{11, "RGBA", Depth::u16},
+    NumberedFormat{16, "RG", Depth::f32},        NumberedFormat{28, "RGBA", Depth::u8},
+    NumberedFormat{29, "RGBA", Depth::u8, true}, NumberedFormat{34, "RG", Depth::f16},
+    NumberedFormat{35, "RG", Depth::u16},        NumberedFormat{41, "R", Depth::f32},
+    NumberedFormat{49, "RG", Depth::u8},         NumberedFormat{54, "R", Depth::f16},
+    NumberedFormat{56, "R", Depth::u16},         NumberedFormat{61, "R", Depth::u8},
+    NumberedFormat{87, "BGRA", Depth::u8},       NumberedFormat{88, "BGRX", Depth::u8},
+    NumberedFormat{91, "BGRA", Depth::u8, true}, NumberedFormat{93, "BGRX", Depth::u8, true},
 };
 
 /// What Direct3D 9 writes in place of a four-character code, and the DXGI_FORMAT of the same texels.
@@ -62,27 +54,28 @@ constexpr std::uint32_t dx10 = code_of("DX10");
 
 // ---- reading
 
-StoredTexels texels_of(const NamedFormat& format) { return stored_texels(format.order, format.depth, format.srgb); }
+StoredTexels texels_of(const NumberedFormat& format) { return stored_texels(format.order, format.depth, format.srgb); }
 
-/// The letters of a four-character code, or its number where it has none.
+/// The letters of a four-character code; where it has none, what Direct3D 9 calls its number.
 std::string written(std::uint32_t code) {
+    if (code == 110) return "D3DFMT_Q16W16V16U16";
+    if (code == 117) return "D3DFMT_CxV8U8";
     std::string text;
     for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>(code >> shift & 0xff);
     const bool is_text = std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 127; });
     return is_text ? text : message(code);
 }
 
-constexpr std::string_view advice = "which are not read; convert it to 8 or 16 bits, half or float, uncompressed";
-
 /// What a four-character code means: a DX10 header behind it, or a wide format.
 StoredTexels texels_by_code(const FileBytes& file, std::uint32_t code) {
     const auto old = std::find_if(old_numbers.begin(), old_numbers.end(), [&](OldNumber n) { return n.code == code; });
-    const NamedFormat* const format = code == dx10               ? find_format(formats, file.u32(at_dxgi))
-                                      : old != old_numbers.end() ? find_format(formats, old->dxgi)
-                                                                 : nullptr;
+    const NumberedFormat* const format = code == dx10               ? find_format(formats, file.u32(at_dxgi))
+                                         : old != old_numbers.end() ? find_format(formats, old->dxgi)
+                                                                    : nullptr;
     if (format != nullptr) return texels_of(*format);
-    if (code == dx10) fail_file(file.name, "has texels of DXGI_FORMAT ", file.u32(at_dxgi), ", ", advice);
-    fail_file(file.name, "has texels of kind ", written(code), ", ", advice);
+    if (code == dx10)
+        fail_file(file.name, "has texels of ", dxgi_format_name(file.u32(at_dxgi)), ", ", advice_for_texels);
+    fail_file(file.name, "has texels of kind ", written(code), ", ", advice_for_texels);
 }
 
 /// What masks mean, as long as each is all bits of a sample of 8 or 16.
@@ -117,11 +110,11 @@ StoredTexels stored_in(const FileBytes& file) {
     if ((flags & (has_colors | has_luminance)) != 0)
         if (const auto texels = texels_by_masks(flags, bits, masks)) return *texels;
     fail_file(file.name, "has texels of ", bits, " bits with masks ", std::hex, masks[0], ' ', masks[1], ' ', masks[2],
-              ' ', masks[3], std::dec, ", ", advice);
+              ' ', masks[3], std::dec, ", ", advice_for_texels);
 }
 
 std::string name_of(const StoredTexels& stored) {
-    if (const NamedFormat* format = find_format(formats, stored)) return std::string(format->name);
+    if (const NumberedFormat* format = find_format(formats, stored)) return dxgi_format_name(format->number);
     std::string name;
     for (const char channel : stored.order) name += message(channel, 8 * size_of(stored.format.depth));
     return name;
@@ -180,7 +173,7 @@ void append_dx10(HeaderBytes& header, const TextureShape& shape) {
 
 }  // namespace
 
-const NamedFormat* dds_format(const TexelFormat& format) { return find_format(formats, format); }
+const NumberedFormat* dds_format(const TexelFormat& format) { return find_format(formats, format); }
 
 ContainerLayout dds_layout(const FileBytes& file) {
     file.require(0, header_end, "its header");

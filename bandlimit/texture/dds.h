@@ -18,7 +18,7 @@ inline constexpr std::string_view dds_identifier = "DDS ";
 ContainerLayout dds_layout(const FileBytes& file);
 
 /// The format in which texels are written; null if there is none.
-const NamedFormat* dds_format(const TexelFormat& format);
+const NumberedFormat* dds_format(const TexelFormat& format);
 
 /// Plans a file for what check_container() accepts: layer by layer, face by face.
 ///

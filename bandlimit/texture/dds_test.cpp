@@ -191,8 +191,11 @@ TEST(Dds, WhatIsNotReadIsNamed) {
     EXPECT_TRUE(is_refused(patched(file, 16, 0xffffffff), "columns"));
     EXPECT_TRUE(is_refused(patched(file, 28, 4), "at most 3"));
     EXPECT_TRUE(is_refused(patched(file, 84, 0x35545844), "DXT5"));
-    EXPECT_TRUE(is_refused(patched(file, 84, 117), "117"));
-    EXPECT_TRUE(is_refused(patched(file, at_dxgi, 98), "DXGI_FORMAT 98"));  // BC7
+    EXPECT_TRUE(is_refused(patched(file, 84, 117), "D3DFMT_CxV8U8"));
+    EXPECT_TRUE(is_refused(patched(file, 84, 118), "kind 118,"));
+    EXPECT_TRUE(is_refused(patched(file, at_dxgi, 31), "DXGI_FORMAT_R8G8B8A8_SNORM,"));
+    EXPECT_TRUE(is_refused(patched(file, at_dxgi, 98), "DXGI_FORMAT_BC7_UNORM,"));
+    EXPECT_TRUE(is_refused(patched(file, at_dxgi, 116), "DXGI_FORMAT 116,"));
     EXPECT_TRUE(is_refused(patched(file, at_dxgi + 4, 4), "dimension"));
     EXPECT_TRUE(is_refused(patched(file, at_dxgi + 8, 4), "squares"));
     EXPECT_TRUE(is_refused(patched(file, at_dxgi + 12, 0), "0 layers"));

@@ -6,38 +6,26 @@
 #include <numeric>
 
 #include "bandlimit/core/file_error.h"
+#include "bandlimit/texture/format_names.h"
 
 namespace bandlimit {
 namespace {
 
 // What is written has red first, so where two formats lie alike the name that says so comes first.
 constexpr std::array formats{
-    NamedFormat{9, "VK_FORMAT_R8_UNORM", "R", Depth::u8},
-    NamedFormat{15, "VK_FORMAT_R8_SRGB", "R", Depth::u8, true},
-    NamedFormat{16, "VK_FORMAT_R8G8_UNORM", "RG", Depth::u8},
-    NamedFormat{22, "VK_FORMAT_R8G8_SRGB", "RG", Depth::u8, true},
-    NamedFormat{23, "VK_FORMAT_R8G8B8_UNORM", "RGB", Depth::u8},
-    NamedFormat{29, "VK_FORMAT_R8G8B8_SRGB", "RGB", Depth::u8, true},
-    NamedFormat{30, "VK_FORMAT_B8G8R8_UNORM", "BGR", Depth::u8},
-    NamedFormat{36, "VK_FORMAT_B8G8R8_SRGB", "BGR", Depth::u8, true},
-    NamedFormat{37, "VK_FORMAT_R8G8B8A8_UNORM", "RGBA", Depth::u8},
-    NamedFormat{43, "VK_FORMAT_R8G8B8A8_SRGB", "RGBA", Depth::u8, true},
-    NamedFormat{44, "VK_FORMAT_B8G8R8A8_UNORM", "BGRA", Depth::u8},
-    NamedFormat{50, "VK_FORMAT_B8G8R8A8_SRGB", "BGRA", Depth::u8, true},
-    NamedFormat{51, "VK_FORMAT_A8B8G8R8_UNORM_PACK32", "RGBA", Depth::u8},
-    NamedFormat{57, "VK_FORMAT_A8B8G8R8_SRGB_PACK32", "RGBA", Depth::u8, true},
-    NamedFormat{70, "VK_FORMAT_R16_UNORM", "R", Depth::u16},
-    NamedFormat{76, "VK_FORMAT_R16_SFLOAT", "R", Depth::f16},
-    NamedFormat{77, "VK_FORMAT_R16G16_UNORM", "RG", Depth::u16},
-    NamedFormat{83, "VK_FORMAT_R16G16_SFLOAT", "RG", Depth::f16},
-    NamedFormat{84, "VK_FORMAT_R16G16B16_UNORM", "RGB", Depth::u16},
-    NamedFormat{90, "VK_FORMAT_R16G16B16_SFLOAT", "RGB", Depth::f16},
-    NamedFormat{91, "VK_FORMAT_R16G16B16A16_UNORM", "RGBA", Depth::u16},
-    NamedFormat{97, "VK_FORMAT_R16G16B16A16_SFLOAT", "RGBA", Depth::f16},
-    NamedFormat{100, "VK_FORMAT_R32_SFLOAT", "R", Depth::f32},
-    NamedFormat{103, "VK_FORMAT_R32G32_SFLOAT", "RG", Depth::f32},
-    NamedFormat{106, "VK_FORMAT_R32G32B32_SFLOAT", "RGB", Depth::f32},
-    NamedFormat{109, "VK_FORMAT_R32G32B32A32_SFLOAT", "RGBA", Depth::f32},
+    NumberedFormat{9, "R", Depth::u8},      NumberedFormat{15, "R", Depth::u8, true},
+    NumberedFormat{16, "RG", Depth::u8},    NumberedFormat{22, "RG", Depth::u8, true},
+    NumberedFormat{23, "RGB", Depth::u8},   NumberedFormat{29, "RGB", Depth::u8, true},
+    NumberedFormat{30, "BGR", Depth::u8},   NumberedFormat{36, "BGR", Depth::u8, true},
+    NumberedFormat{37, "RGBA", Depth::u8},  NumberedFormat{43, "RGBA", Depth::u8, true},
+    NumberedFormat{44, "BGRA", Depth::u8},  NumberedFormat{50, "BGRA", Depth::u8, true},
+    NumberedFormat{51, "RGBA", Depth::u8},  NumberedFormat{57, "RGBA", Depth::u8, true},
+    NumberedFormat{70, "R", Depth::u16},    NumberedFormat{76, "R", Depth::f16},
+    NumberedFormat{77, "RG", Depth::u16},   NumberedFormat{83, "RG", Depth::f16},
+    NumberedFormat{84, "RGB", Depth::u16},  NumberedFormat{90, "RGB", Depth::f16},
+    NumberedFormat{91, "RGBA", Depth::u16}, NumberedFormat{97, "RGBA", Depth::f16},
+    NumberedFormat{100, "R", Depth::f32},   NumberedFormat{103, "RG", Depth::f32},
+    NumberedFormat{106, "RGB", Depth::f32}, NumberedFormat{109, "RGBA", Depth::f32},
 };
 
 // Offsets in the header.
@@ -55,17 +43,15 @@ constexpr std::string_view orientation_key = "KTXorientation", top_first = "rd",
 
 // ---- reading
 
-const NamedFormat& format_of(const FileBytes& file) {
+const NumberedFormat& format_of(const FileBytes& file) {
     const std::uint32_t supercompression = file.u32(at_supercompression), number = file.u32(at_format);
     constexpr std::array schemes{"none", "BasisLZ", "Zstandard", "ZLIB"};
     if (supercompression != 0)
         fail_file(file.name, "is supercompressed (",
                   supercompression < schemes.size() ? schemes[supercompression] : "an unknown scheme",
                   "), which is not read; unpack it first");
-    const NamedFormat* const found = find_format(formats, number);
-    if (found == nullptr)
-        fail_file(file.name, "has texels of VkFormat ", number,
-                  ", which are not read; convert it to 8 or 16 bits, half or float, uncompressed");
+    const NumberedFormat* const found = find_format(formats, number);
+    if (found == nullptr) fail_file(file.name, "has texels of ", vulkan_format_name(number), ", ", advice_for_texels);
     return *found;
 }
 
@@ -190,11 +176,11 @@ void place_levels(const TextureShape& shape, std::uint64_t offset, std::uint64_t
 
 }  // namespace
 
-const NamedFormat* ktx2_format(const TexelFormat& format) { return find_format(formats, format); }
+const NumberedFormat* ktx2_format(const TexelFormat& format) { return find_format(formats, format); }
 
 ContainerLayout ktx2_layout(const FileBytes& file) {
     file.require(0, header_bytes, "its header");
-    const NamedFormat& format = format_of(file);
+    const NumberedFormat& format = format_of(file);
     constexpr int longest = std::numeric_limits<int>::max();
     if (file.u32(at_depth) != 0) fail_file(file.name, "is a volume, which is not read; store its slices as layers");
     if (file.u32(at_height) == 0) fail_file(file.name, "has one dimension, which is not read; give it a height of 1");
@@ -207,7 +193,7 @@ ContainerLayout ktx2_layout(const FileBytes& file) {
     layout.stored.format.premultiplied = layout.stored.format.channels == 4 && is_premultiplied(file);
     layout.is_bottom_first = goes_up(file);
     layout.info = {.container = Container::ktx2,
-                   .format = std::string(format.name),
+                   .format = vulkan_format_name(format.number),
                    .texels = layout.stored.format,
                    .texel_bytes = static_cast<int>(layout.stored.bytes()),
                    .width = checked_count(file, file.u32(at_width), "columns", longest),

@@ -16,7 +16,7 @@ inline constexpr std::string_view ktx2_identifier = "\xabKTX 20\xbb\r\n\x1a\n";
 ContainerLayout ktx2_layout(const FileBytes& file);
 
 /// The format in which texels are written; null if there is none.
-const NamedFormat* ktx2_format(const TexelFormat& format);
+const NumberedFormat* ktx2_format(const TexelFormat& format);
 
 /// Plans a file for what check_container() accepts: levels from the smallest to the largest, each at
 /// a multiple of its texels and of 4 bytes, with the keys KTXorientation and KTXwriter.

@@ -233,8 +233,10 @@ TEST(Ktx2, WhatIsNotReadIsNamed) {
     const FileContent file = ktx2({4, Depth::u8}, {5, 3, 2}), cube = ktx2({4, Depth::u8}, {4, 4, 2, true});
     EXPECT_TRUE(is_refused(patched(file, 44, 2), "Zstandard"));
     EXPECT_TRUE(is_refused(patched(file, 44, 99), "unknown scheme"));
-    EXPECT_TRUE(is_refused(patched(file, 12, 0), "VkFormat 0"));
-    EXPECT_TRUE(is_refused(patched(file, 12, 145), "VkFormat 145"));  // BC7
+    EXPECT_TRUE(is_refused(patched(file, 12, 0), "VK_FORMAT_UNDEFINED,"));
+    EXPECT_TRUE(is_refused(patched(file, 12, 38), "VK_FORMAT_R8G8B8A8_SNORM,"));
+    EXPECT_TRUE(is_refused(patched(file, 12, 145), "VK_FORMAT_BC7_UNORM_BLOCK,"));
+    EXPECT_TRUE(is_refused(patched(file, 12, 185), "VkFormat 185,"));
     EXPECT_TRUE(is_refused(patched(file, 20, 0), "0 columns"));
     EXPECT_TRUE(is_refused(patched(file, 20, 0x80000000), "columns"));
     EXPECT_TRUE(is_refused(patched(file, 24, 0), "one dimension"));
