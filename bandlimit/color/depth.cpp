@@ -57,6 +57,10 @@ AnyConstView const_view(const AnyView& view) {
                       view);
 }
 
+void check_apart(const char* function, const AnyConstView& source, const AnyView& target) {
+    std::visit([&](const auto& from, const auto& to) { check_apart(function, from, to); }, source, target);
+}
+
 Depth depth_of(const AnyConstView& view) { return depths[view.index()]; }
 
 }  // namespace bandlimit

@@ -9,6 +9,7 @@
 
 #include "bandlimit/color/half.h"
 #include "bandlimit/core/image.h"
+#include "bandlimit/core/overlap.h"
 
 namespace bandlimit {
 
@@ -40,6 +41,9 @@ AnyConstView const_view(const AnyView& view);
 AnyView rows_of(const AnyView& view, int first, int count);
 AnyConstView rows_of(const AnyConstView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);
+
+/// As check_apart() of two views.
+void check_apart(const char* function, const AnyConstView& source, const AnyView& target);
 
 /// How many samples a view has each way.
 struct ViewShape {

@@ -16,6 +16,10 @@ struct Encoding {
     bool associated = false;               ///< colour is stored multiplied by alpha
 };
 
+/// Throws Error, in the name of `function`, for an alpha that is none of `channels` channels, nor -1. Every function
+/// that takes an Encoding calls it.
+void check_encoding(const char* function, const Encoding& encoding, int channels);
+
 /// Reads row `y` of `image` as linear light, channels interleaved, into `row`.
 ///
 /// shapes   row [width * channels]
@@ -41,6 +45,7 @@ bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& i
 /// Lays `row` (channels interleaved, alpha among them) over an opaque colour, and drops alpha.
 ///
 /// shapes   row [width * channels], background [channels - 1] in linear light, out [width * (channels - 1)]
+/// throws   Error for an alpha that is no channel
 void composite_row(std::span<const float> row, bool premultiplied, int channels, int alpha,
                    std::span<const float> background, std::span<float> out);
 

@@ -3,11 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/image.h"
+#include "bandlimit/filter/bokeh.h"
+#include "bandlimit/filter/convolve.h"
+#include "bandlimit/resample/fetch_banks.h"
+#include "bandlimit/resample/resize.h"
+#include "bandlimit/resample/term_filter.h"
+#include "bandlimit/texture/cascade.h"
+#include "bandlimit/texture/level_filter.h"
+#include "bandlimit/texture/mips.h"
 
 namespace bandlimit {
 namespace {
@@ -237,6 +247,73 @@ TEST(Encoding, FollowsStridesAndRows) {
     Row too_short(9);
     EXPECT_THROW(decode_row(View<const std::uint16_t>(planar.view()), 0, {}, false, too_short), Error);
     EXPECT_THROW(encode_row(too_short, false, planar.view(), 0, {}), Error);
+}
+
+/// A public function that takes an Encoding, called with one for pictures of four channels.
+struct TakesEncoding {
+    std::string name;
+    std::function<void(const Encoding&)> call;
+};
+
+std::vector<TakesEncoding> functions_that_take_encodings() {
+    static Image<float> from(8, 8, 4, Layout::interleaved), to(8, 8, 4, Layout::interleaved);
+    static std::vector<float> row(8 * 4);
+    const Grid grid{{8}, {8}};
+    const auto resize = [=](const Encoding& a, const Encoding& b) {
+        Resizer(grid, grid, 4).run({from.view(), 0, a}, {to.view(), 0, b, {}});
+    };
+    const auto terms = [=](const Encoding& a, const Encoding& b) {
+        TermFilter(bank_terms(Taps{0, {1}}, grid, grid, Edge::clamp, Edge::clamp), true)
+            .run({from.view(), 0, a}, {to.view(), 0, b, {}}, {});
+    };
+    const auto level = [=](const Encoding& a, const Encoding& b) {
+        LevelFilter(Auto{}, grid, grid, 4, {}).run({from.view(), 0, a}, {to.view(), 0, b, {}}, {});
+    };
+    const ConvolutionWeights weights{Terms{{{1.0}, {1.0}}}, 0, 0};
+    const auto convolve = [=](Method method, const Encoding& a, const Encoding& b) {
+        Convolution(weights, 8, 8, {.method = method}).run({from.view(), 0, a}, {to.view(), 0, b, {}});
+    };
+    const auto boosted = [=](const Encoding& a, const Encoding& b) {
+        run_boosted(Convolution(weights, 8, 8), 2, true, {from.view(), 0, a}, {to.view(), 0, b, {}});
+    };
+    const TexelFormat format{4, Depth::f32};
+    const View<const float> base = from.view();
+    const std::vector<AnyConstView> faces(6, base);
+    return {
+        {"decode_row", [](const Encoding& e) { decode_row(from.view(), 0, e, true, row); }},
+        {"encode_row", [](const Encoding& e) { encode_row(row, true, to.view(), 0, e); }},
+        {"Resizer::run, source", [=](const Encoding& e) { resize(e, {}); }},
+        {"Resizer::run, target", [=](const Encoding& e) { resize({}, e); }},
+        {"TermFilter::run, source", [=](const Encoding& e) { terms(e, {}); }},
+        {"TermFilter::run, target", [=](const Encoding& e) { terms({}, e); }},
+        {"LevelFilter::run, source", [=](const Encoding& e) { level(e, {}); }},
+        {"LevelFilter::run, target", [=](const Encoding& e) { level({}, e); }},
+        {"Convolution::run, source", [=](const Encoding& e) { convolve(Method::direct, e, {}); }},
+        {"Convolution::run, target", [=](const Encoding& e) { convolve(Method::direct, {}, e); }},
+        {"Convolution::run by FFT, source", [=](const Encoding& e) { convolve(Method::fft, e, {}); }},
+        {"Convolution::run by FFT, target", [=](const Encoding& e) { convolve(Method::fft, {}, e); }},
+        {"run_boosted, source", [=](const Encoding& e) { boosted(e, {}); }},
+        {"run_boosted, target", [=](const Encoding& e) { boosted({}, e); }},
+        {"MipCascade", [](const Encoding& e) { MipCascade(8, 8, 4, e, 1, {}); }},
+        {"make_mips", [=](const Encoding& e) { make_mips(base, e, format); }},
+        {"make_mips of data", [=](const Encoding& e) { make_mips(base, e, format, {.role = Role::data}); }},
+        {"make_mips of normals", [=](const Encoding& e) { make_mips(base, e, format, {.role = Role::normal}); }},
+        {"make_mips by fetches", [=](const Encoding& e) { make_mips(base, e, format, {.filter = downsample8()}); }},
+        {"MipStream", [=](const Encoding& e) { MipStream(8, 8, 4, Depth::f32, e, format); }},
+        {"make_cube_mips", [=](const Encoding& e) { make_cube_mips(faces, e, format); }},
+    };
+}
+
+TEST(Encoding, EveryFunctionThatTakesOneRefusesAnAlphaThatIsNoChannel) {
+    for (const TakesEncoding& f : functions_that_take_encodings()) {
+        for (const int alpha : {-1, 3}) EXPECT_NO_THROW(f.call({Transfer::linear, alpha})) << f.name << ' ' << alpha;
+        for (const int alpha : {-2, 4, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
+            EXPECT_THROW(f.call({Transfer::linear, alpha}), Error) << f.name << ' ' << alpha;
+    }
+    std::vector<float> row(8 * 4), opaque(8 * 3);
+    const std::vector<float> background(3);
+    for (const int alpha : {-2, -1, 4})
+        EXPECT_THROW(composite_row(row, true, 4, alpha, background, opaque), Error) << alpha;
 }
 
 }  // namespace

@@ -90,6 +90,9 @@ bool run_boosted(const Convolution& convolution, double gamma, bool premultiply,
                  const TargetRows& target, Parallel parallel) {
     if (!(gamma > 0 && std::isfinite(gamma))) fail("run_boosted: gamma = ", gamma, "; pass a finite one above 0");
     const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
+    check_encoding("run_boosted", source.encoding, from.channels);
+    check_encoding("run_boosted", target.encoding, to.channels);
+    check_apart("run_boosted", source.samples, target.samples);
     const bool multiplied = premultiply || source.encoding.associated;
     const int alpha = source.encoding.alpha;
     const Encoding between{Transfer::linear, alpha, multiplied};

@@ -195,6 +195,9 @@ bool FftFilter::run(const SourceRows& source, const TargetRows& target, Parallel
     if (from.width != width_ || to.width != width_ || from.channels != to.channels || from.channels < 1)
         fail("FftFilter::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
              " with ", to.channels, "; need ", width_, " with equal channels");
+    check_encoding("FftFilter::run", source.encoding, from.channels);
+    check_encoding("FftFilter::run", target.encoding, to.channels);
+    check_apart("FftFilter::run", source.samples, target.samples);
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
     if (needed.begin < needed.end && (needed.begin < source.first_row || needed.end > source.first_row + from.height))

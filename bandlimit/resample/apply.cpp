@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/core/overlap.h"
 #include "bandlimit/resample/combine.h"
 #include "bandlimit/resample/lines.h"
 #include "bandlimit/resample/tiles.h"
@@ -72,6 +73,7 @@ IndexRange stored_indices(IndexRange read, int count, Edge edge) {
 
 void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel, double antiring) {
     check_shapes("apply", bank, src.width, dst.width, same_lines(src, dst));
+    check_apart("apply", src, dst);
     check_antiring(antiring);
     const auto strength = static_cast<float>(antiring);
     if (has_contiguous_lanes(src) && has_contiguous_lanes(dst)) {
@@ -90,6 +92,7 @@ void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel pa
 
 void apply_scalar(const Bank& bank, View<const float> src, View<float> dst, double antiring) {
     check_shapes("apply_scalar", bank, src.width, dst.width, same_lines(src, dst));
+    check_apart("apply_scalar", src, dst);
     check_antiring(antiring);
     const IndexRange read = indices_read(bank, 0, bank.output_count());
     for (int c = 0; c < src.channels; ++c)
@@ -104,6 +107,7 @@ void apply_scalar(const Bank& bank, View<const float> src, View<float> dst, doub
 
 void apply_adjoint(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel) {
     check_shapes("apply_adjoint", bank, dst.width, src.width, same_lines(src, dst));
+    check_apart("apply_adjoint", src, dst);
     parallel_for(static_cast<std::ptrdiff_t>(src.height) * src.channels, 16, parallel,
                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                      for (std::ptrdiff_t lane = begin; lane < end; ++lane) {

@@ -15,7 +15,7 @@ namespace bandlimit {
 ///          every instruction set with fused multiply-add
 /// cost     outputs * h * c * taps multiply-adds; scratch of 32 rows per thread unless y (with its channels) is the
 ///          contiguous direction, where there is none
-/// throws   Error if the shapes disagree
+/// throws   Error if the shapes disagree, and where src and dst overlap
 /// example  apply(make_bank(mitchell(), Axis{640}, Axis{320}, Edge::reflect), src, dst);
 void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel = {}, double antiring = 0);
 
@@ -26,7 +26,7 @@ void apply_scalar(const Bank& bank, View<const float> src, View<float> dst, doub
 ///
 /// shapes   src [outputs x h x c], dst [inputs x h x c]
 /// error    as apply(), with the number of outputs that read an input for taps
-/// throws   Error if the shapes disagree
+/// throws   Error if the shapes disagree, and where src and dst overlap
 void apply_adjoint(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel = {});
 
 }  // namespace bandlimit

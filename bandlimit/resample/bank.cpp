@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -63,15 +64,54 @@ PhaseRow sampled_row(const Kernel& kernel, const Footing& at) {
 
 double sum_of(std::span<const double> w) { return std::accumulate(w.begin(), w.end(), 0.0); }
 
-/// Appends weights as floats. Each carries the rounding of those before it, so that the sum of the floats is the sum of
-/// the doubles to the rounding of the last one. Zeros stay zeros.
-void append_rounded(std::vector<float>& to, std::span<const double> weights) {
+/// Floats of `scale` times the weights. Each carries the rounding of those before it, so that the sum of the floats is
+/// that of the doubles to the rounding of the last one. Zeros stay zeros.
+std::vector<float> rounded(std::span<const double> weights, double scale = 1) {
+    std::vector<float> floats;
+    floats.reserve(weights.size());
     double carry = 0;
     for (const double w : weights) {
-        const float rounded = w == 0 ? 0 : static_cast<float>(w + carry);
-        carry += w - static_cast<double>(rounded);
-        to.push_back(rounded);
+        floats.push_back(w == 0 ? 0 : static_cast<float>(scale * w + carry));
+        carry += scale * w - static_cast<double>(floats.back());
     }
+    return floats;
+}
+
+/// What a row makes of ones: combine() adds its weights one by one, and rounds each sum.
+float sum_as_executed(std::span<const float> row) { return std::accumulate(row.begin(), row.end(), 0.0f); }
+
+/// The differences of the weights' partial sums, rounded to a step so coarse that floats hold all of these numbers, and
+/// no addition of them rounds.
+std::vector<float> differences_of_sums(std::span<const double> weights) {
+    double largest = 0, sum = 0;
+    for (const double w : weights) largest = std::max({largest, std::abs(w), std::abs(sum += w)});
+    const double step = std::ldexp(1.0, std::ilogb(largest) + 1 - std::numeric_limits<float>::digits);
+    std::vector<float> floats;
+    double before = sum = 0;
+    for (const double w : weights) {
+        const double next = w == 0 ? before : std::round((sum += w) / step) * step;
+        floats.push_back(static_cast<float>(next - before));
+        before = next;
+    }
+    return floats;
+}
+
+/// Floats of weights whose sum is 1 that add up to exactly 1 when executed, so that what is 1 everywhere, as alpha
+/// often is, stays 1. To scale all by less than a rounding mostly does; where steps of sums above 1, which are
+/// twice as coarse as those below, lead past it every time, the weights become differences.
+std::vector<float> rounded_to_unit_sum(std::span<const double> weights) {
+    constexpr int tries = 8;
+    const double largest = std::abs(*std::max_element(weights.begin(), weights.end(),
+                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    const double most = 0x1p-24 / largest;  // changes no weight by more than differences may
+    double scale = 1;
+    for (int i = 0; i < tries && std::abs(scale - 1) <= most; ++i) {
+        std::vector<float> floats = rounded(weights, scale);
+        const double lack = 1 - static_cast<double>(sum_as_executed(floats));
+        if (lack == 0) return floats;
+        scale += lack / 2;
+    }
+    return differences_of_sums(weights);
 }
 
 /// Collects the rows of a bank: those that lie inside are shared by phase, the others cut to what the edge lets them
@@ -102,7 +142,9 @@ private:
         const int near_begin = std::clamp(row.near_first - row.first, 0, count - 1);
         const int near_end = std::clamp(row.near_last - row.first + 1, near_begin + 1, count);
         bank_.rows.push_back({bank_.weights.size(), count, near_begin, near_end - near_begin});
-        append_rounded(bank_.weights, row.weights);
+        const bool has_unit_sum = std::abs(sum_of(row.weights) - 1) < 1e-9;
+        const std::vector<float> floats = has_unit_sum ? rounded_to_unit_sum(row.weights) : rounded(row.weights);
+        bank_.weights.insert(bank_.weights.end(), floats.begin(), floats.end());
     }
 
     /// A row of its own for an output that reaches outside, with only what lies inside.

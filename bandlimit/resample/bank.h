@@ -49,12 +49,15 @@ struct Bank {
 /// The weights that resample `src` to `dst` by a separable kernel.
 ///
 /// The kernel is widened to the pitch of `dst` where that is coarser (all but nearest), so that it limits the band.
-/// Rows sum to 1, to the rounding of one float; weights that are exactly 0 at the ends of a row are left out.
+/// Weights that are exactly 0 at the ends of a row are left out. The others, rounded to floats, add up to exactly 1 as
+/// combine() adds them: what is 1 everywhere stays 1. (Under Edge::zero not the rows that are cut.)
 /// Equal axes give one weight of 1 for kernels that interpolate. Phases of rational scale factors are computed exactly,
 /// so that the bank of a part of `dst` (Axis::cells) holds the same bits as that part of the bank of the whole.
 ///
 /// units    both axes in the same unit; dst may be flipped, and may reach beyond src
-/// throws   Error for counts < 1, an empty or not finite interval, a radial kernel, and under zero or renormalize where
+/// error    2^-23 per weight, where partial sums stay below 2; mostly one rounding of the weight per addition of the
+/// row throws   Error for counts < 1, an empty or not finite interval, a radial kernel, and under zero or renormalize
+/// where
 ///          an output has no weight inside the source
 /// cost     one evaluation of the kernel per weight of a distinct row
 Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge);
@@ -62,7 +65,8 @@ Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge
 /// About how much memory make_bank takes for a kernel of this radius, in bytes: known before anything is allocated.
 std::uint64_t bank_bytes(double radius, const Axis& src, const Axis& dst);
 
-/// The bank that applies `taps` as they are. dst must be coarser than src by exactly taps.factor, in the same place.
+/// The bank that applies `taps` as they are; those that sum to 1, within 1e-9, as floats that add up to exactly 1. dst
+/// must be coarser than src by exactly taps.factor, in the same place.
 ///
 /// throws   Error as above, for no or not finite weights, where the factor does not fit the axes, and for renormalize
 ///          with taps of sum 0

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "bandlimit/core/overlap.h"
+
 namespace bandlimit {
 namespace {
 
@@ -13,27 +15,28 @@ std::span<const float> row_of(const Bank& bank, const Bank::Row& row) {
     return std::span(bank.weights).subspan(row.offset, static_cast<std::size_t>(row.count));
 }
 
-bool fits(const Bank& bank) {
-    return std::all_of(bank.rows.begin(), bank.rows.end(), [&](const Bank::Row& row) {
-        double sum = 0;
-        for (const float w : row_of(bank, row)) sum += std::abs(double{w});
-        return sum <= largest_sum;
-    });
+bool fits(std::span<const float> row) {
+    double sum = 0;
+    for (const float w : row) sum += std::abs(double{w});
+    return sum <= largest_sum;
 }
 
 /// The largest sum of the magnitudes of two adjacent weights.
-double largest_pair(const Bank& bank) {
-    double largest = 0;
-    for (const Bank::Row& row : bank.rows) {
-        double before = 0;
-        for (const float w : row_of(bank, row)) {
-            const double magnitude = std::abs(double{w});
-            largest = std::max(largest, before + magnitude);
-            before = magnitude;
-        }
+double largest_pair(std::span<const float> row) {
+    double largest = 0, before = 0;
+    for (const float w : row) {
+        const double magnitude = std::abs(double{w});
+        largest = std::max(largest, before + magnitude);
+        before = magnitude;
     }
     return largest;
 }
+
+int bits_along_x(std::span<const float> row) { return fits(row) ? 14 : 0; }
+
+/// A weight is split in two signed bytes, and products of two rows are added up in 16 bits where the machine has no
+/// wider sums: two adjacent weights must not reach 1, or 2 with one bit less.
+int bits_along_y(std::span<const float> row) { return !fits(row) ? 0 : largest_pair(row) < 0.99 ? 14 : 13; }
 
 /// Rounds down first; then the weights that lost most get back what the sum lacks (the method of largest remainders).
 void quantize(std::span<const float> row, double one, std::int16_t* out) {
@@ -54,10 +57,14 @@ void quantize(std::span<const float> row, double one, std::int16_t* out) {
     for (int k = 0; k < lacking; ++k) ++out[order[static_cast<std::size_t>(k)]];
 }
 
-ByteBank make_byte_bank(const Bank& bank, int bits) {
-    ByteBank result{&bank, bits, std::vector<std::int16_t>(bank.weights.size())};
-    for (const Bank::Row& row : bank.rows)
-        quantize(row_of(bank, row), std::ldexp(1.0, bits), result.weights.data() + row.offset);
+ByteBank make_byte_bank(const Bank& bank, int (*bits_along)(std::span<const float>)) {
+    ByteBank result{&bank, {}, std::vector<std::int16_t>(bank.weights.size())};
+    for (const Bank::Row& info : bank.rows) {
+        const std::span<const float> row = row_of(bank, info);
+        const int bits = bits_along(row);
+        result.bits.push_back(bits);
+        if (bits > 0) quantize(row, std::ldexp(1.0, bits), result.weights.data() + info.offset);
+    }
     return result;
 }
 
@@ -66,14 +73,12 @@ int rounded(int sum, int shift) { return (sum + (1 << (shift - 1))) >> shift; }
 
 }  // namespace
 
-std::optional<ByteBanks> make_byte_banks(const Bank& x, const Bank& y) {
-    if (!fits(x) || !fits(y)) return std::nullopt;
-    // Along y a weight is split in two signed bytes, and products of two rows are added up in 16 bits where the machine
-    // has no wider sums: two adjacent weights must not reach 1, or 2 with one bit less.
-    return ByteBanks{make_byte_bank(x, 14), make_byte_bank(y, largest_pair(y) < 0.99 ? 14 : 13)};
+ByteBanks make_byte_banks(const Bank& x, const Bank& y) {
+    return {make_byte_bank(x, bits_along_x), make_byte_bank(y, bits_along_y)};
 }
 
 void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, View<std::uint8_t> dst) {
+    check_apart("resize_bytes_scalar", src, dst);
     const Bank &x = *banks.x.bank, &y = *banks.y.bank;
     std::vector<int> column(static_cast<std::size_t>(src.width));
     const auto along_y = [&](int v, int i, int c) {
@@ -81,19 +86,21 @@ void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, V
         const std::span<const std::int16_t> row = banks.y.row(i);
         for (int j = 0; j < static_cast<int>(row.size()); ++j)
             sum += row[static_cast<std::size_t>(j)] * src(v, resolve(y.first(i) + j, y.inputs, y.edge), c);
-        return rounded(sum, banks.y.bits - 6);
+        return rounded(sum, banks.y.bits_of(i) - 6);
     };
     for (int c = 0; c < dst.channels; ++c)
         for (int i = 0; i < dst.height; ++i) {
+            if (!banks.y.fits(i)) continue;
             for (int v = 0; v < src.width; ++v) column[static_cast<std::size_t>(v)] = along_y(v, i, c);
             for (int k = 0; k < dst.width; ++k) {
+                if (!banks.x.fits(k)) continue;
                 int sum = 0;
                 const std::span<const std::int16_t> row = banks.x.row(k);
                 for (int j = 0; j < static_cast<int>(row.size()); ++j) {
                     const int v = resolve(x.first(k) + j, x.inputs, x.edge);
                     sum += row[static_cast<std::size_t>(j)] * column[static_cast<std::size_t>(v)];
                 }
-                dst(k, i, c) = static_cast<std::uint8_t>(std::clamp(rounded(sum, banks.x.bits + 6), 0, 255));
+                dst(k, i, c) = static_cast<std::uint8_t>(std::clamp(rounded(sum, banks.x.bits_of(k) + 6), 0, 255));
             }
         }
 }

@@ -56,6 +56,7 @@ bool halves_by_box(const Bank& bank) {
 
 BytePairs make_byte_pairs(const ByteBank& bank) {
     const auto pairs_of = [&](int i) {
+        if (!bank.fits(i)) return 0;
         const int first = bank.bank->first(i), last = first + static_cast<int>(bank.row(i).size()) - 1;
         return (last >> 1) - (first >> 1) + 1;
     };

@@ -67,7 +67,7 @@ struct BytePairs {
     std::vector<std::int32_t> weights;  ///< two signed 16-bit weights each
     std::vector<Output> outputs;
 };
-/// The weights must have 14 bits.
+/// Of rows that do not fit, and have no weights, nothing is to be computed.
 BytePairs make_byte_pairs(const ByteBank& bank);
 
 /// Horizontal: pixels [begin, end) of tile_rows(pixel) rows; rows[r] points to pixel `begin`, or is null to leave it

@@ -160,7 +160,7 @@ private:
                 lines_.clear();
                 for (int g = 0; g < static_cast<int>(taps.high.size()); ++g)
                     lines_.push_back(group(window_.slot_of(taps.first_group + g)));
-                combine_byte_rows(taps, bank.bits, lines_.data(), k, std::min(k + strip, padded_),
+                combine_byte_rows(taps, bank.bits_of(first + r), lines_.data(), k, std::min(k + strip, padded_),
                                   ahead_of(first + r, last), pixel_, row(r));
             }
     }
@@ -259,8 +259,10 @@ IndexRange stored_columns(const Bank& x, IndexRange read) {
     return {stored.begin & ~1, stored.end};
 }
 
-/// Strips whose source rows, as many as a block of output rows reads, fit the second cache.
-std::vector<ByteStrip> make_strips(const Bank& x, const Bank& y, Pixel pixel) {
+/// Strips of the columns that fit integers, whose source rows, as many as a block of output rows reads, fit the second
+/// cache.
+std::vector<ByteStrip> make_strips(const ByteBanks& banks, Pixel pixel) {
+    const Bank &x = *banks.x.bank, &y = *banks.y.bank;
     const auto ratio = [](const Bank& bank) { return static_cast<double>(bank.inputs) / bank.output_count(); };
     int most_rows = 0, most_columns = 0;
     for (const Bank::Row& row : y.rows) most_rows = std::max(most_rows, row.count);
@@ -272,11 +274,13 @@ std::vector<ByteStrip> make_strips(const Bank& x, const Bank& y, Pixel pixel) {
                             ? x.output_count()
                             : std::max(64, static_cast<int>(columns / ratio(x)) & ~15);
     std::vector<ByteStrip> strips;
-    for (int first = 0; first < x.output_count(); first += std::min(outputs, x.output_count() - first)) {
-        const int last = first + std::min(outputs, x.output_count() - first);
-        const IndexRange read = indices_read(x, first, last);
-        strips.push_back({first, last, read, stored_columns(x, read)});
-    }
+    for_each_run(banks.x, 0, x.output_count(), [&](int begin, int end, bool fits) {
+        for (int first = begin, last = begin; fits && first < end; first = last) {
+            last = first + std::min(outputs, end - first);
+            const IndexRange read = indices_read(x, first, last);
+            strips.push_back({first, last, read, stored_columns(x, read)});
+        }
+    });
     return strips;
 }
 
@@ -295,8 +299,8 @@ BytePlan make_byte_plan(const ByteBanks& banks) {
     const Bank &x = *banks.x.bank, &y = *banks.y.bank;
     return {banks,
             make_byte_pairs(banks.x),
-            make_strips(x, y, Pixel::one),
-            make_strips(x, y, Pixel::four),
+            make_strips(banks, Pixel::one),
+            make_strips(banks, Pixel::four),
             best_origin(y),
             halves_by_box(x) && halves_by_box(y)};
 }

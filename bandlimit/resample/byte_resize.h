@@ -22,13 +22,14 @@ struct ByteStrip {
 struct BytePlan {
     ByteBanks banks;
     BytePairs pairs;
-    std::vector<ByteStrip> strips_of_one, strips_of_four;  ///< for pixels of one and of four samples
+    std::vector<ByteStrip> strips_of_one, strips_of_four;  ///< of columns that fit, for pixels of one and four samples
     int origin = 0;                                        ///< of the groups of four rows
     bool is_half_box = false;
 };
 BytePlan make_byte_plan(const ByteBanks& banks);
 
-/// Computes rows [begin, end) of the output in one thread: the codes of resize_bytes_scalar().
+/// Computes rows [begin, end) of the output, which must all fit integers, in one thread: the codes of
+/// resize_bytes_scalar(). Columns that do not fit are left as they are.
 ///
 /// shapes   src holds the stored rows from first_source on that the outputs read, dst the output rows from first_target
 ///          on; any strides, any number of channels

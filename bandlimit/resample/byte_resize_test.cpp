@@ -37,6 +37,13 @@ View<T> turned(View<T> v, int how) {
     return v;
 }
 
+bool all_fit(const ByteBank& bank) {
+    int fitting = 0;
+    for_each_run(bank, 0, bank.bank->output_count(),
+                 [&](int begin, int end, bool fits) { fitting += fits ? end - begin : 0; });
+    return fitting == bank.bank->output_count();
+}
+
 std::string difference(View<const std::uint8_t> a, View<const std::uint8_t> b) {
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x)
@@ -63,13 +70,13 @@ TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
         const Axis to_x = places[run % (reads_outside ? 7 : 4)];
         const Bank x = make_bank(kernel, {width}, to_x, edge);
         const Bank y = make_bank(kernel, {height}, {new_height, 0, run % 5 ? 1 : 0.7}, edge);
-        const auto banks = make_byte_banks(x, y);
-        ASSERT_TRUE(banks);
+        const ByteBanks banks = make_byte_banks(x, y);
+        ASSERT_TRUE(all_fit(banks.x) && all_fit(banks.y));
         const Image<std::uint8_t> src = noise(random, width, height, channels, layout());
         Image<std::uint8_t> expected(new_width, new_height, channels), found(new_width, new_height, channels, layout());
         const View<const std::uint8_t> from = turned(src.view(), run);
-        resize_bytes_scalar(*banks, from, expected.view());
-        const BytePlan plan = make_byte_plan(*banks);
+        resize_bytes_scalar(banks, from, expected.view());
+        const BytePlan plan = make_byte_plan(banks);
         for_each_instruction_set([&](const std::string& target, bool) {
             if (!has_byte_vectors()) return;
             const int cut = random.integer(0, new_height);
@@ -90,13 +97,12 @@ TEST(ResizeBytes, WideImagesAreThoseOfTheirDefinition) {
             const int width = random.integer(5000, 9000), height = 120, new_width = random.integer(2000, 4000);
             const Bank x = make_bank(lanczos(3), {width}, {new_width}, edge);
             const Bank y = make_bank(lanczos(3), {height}, {9}, edge);
-            const auto banks = make_byte_banks(x, y);
-            ASSERT_TRUE(banks);
-            const BytePlan plan = make_byte_plan(*banks);
+            const ByteBanks banks = make_byte_banks(x, y);
+            const BytePlan plan = make_byte_plan(banks);
             EXPECT_EQ(plan.strips_of_four.size() > 2, edge != Edge::wrap);
             const Image<std::uint8_t> src = noise(random, width, height, channels, Layout::interleaved);
             Image<std::uint8_t> expected(new_width, 9, channels), found(new_width, 9, channels, Layout::interleaved);
-            resize_bytes_scalar(*banks, src.view(), expected.view());
+            resize_bytes_scalar(banks, src.view(), expected.view());
             if (!has_byte_vectors()) return;
             resize_bytes(plan, src.view(), 0, found.view(), 0, 0, 9);
             ASSERT_EQ(difference(found.view(), expected.view()), "") << name_of(edge) << ' ' << channels;
@@ -107,12 +113,11 @@ TEST(ResizeBytes, KeepsConstantsExactly) {
     for (const Kernel& kernel : kernels())
         for (const int size : {5, 37, 80}) {
             const Bank bank = make_bank(kernel, {37}, {size}, Edge::renormalize);
-            const auto banks = make_byte_banks(bank, bank);
-            ASSERT_TRUE(banks);
+            const ByteBanks banks = make_byte_banks(bank, bank);
             for (int code = 0; code < 256; ++code) {
                 Image<std::uint8_t> src(37, 37), dst(size, size);
                 std::fill_n(src.view().data, 37 * 37, static_cast<std::uint8_t>(code));
-                resize_bytes_scalar(*banks, src.view(), dst.view());
+                resize_bytes_scalar(banks, src.view(), dst.view());
                 for (int i = 0; i < size * size; ++i) ASSERT_EQ(dst.view().data[i], code) << kernel.name;
             }
         }
@@ -137,12 +142,31 @@ TEST(ResizeBytes, ErrsByOneCodeAtMost) {
         }
 }
 
-TEST(ByteBank, RefusesWhatMayOverflow) {
+TEST(ByteBank, LeavesToFloatsWhatMayOverflow) {
     const Taps sharpening{-1, {-0.5, 2, -0.5}};
     const Bank bank = make_bank(sharpening, 20, Edge::clamp), plain = make_bank(tent(), {20}, {20}, Edge::clamp);
-    EXPECT_FALSE(make_byte_banks(bank, plain));
-    EXPECT_FALSE(make_byte_banks(plain, bank));
-    EXPECT_TRUE(make_byte_banks(plain, plain));
+    const ByteBanks banks = make_byte_banks(bank, plain), turned = make_byte_banks(plain, bank);
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_FALSE(banks.x.fits(i) || turned.y.fits(i));
+        EXPECT_TRUE(banks.y.fits(i) && turned.x.fits(i));
+    }
+}
+
+TEST(ByteBank, DecidesForEachRowAlone) {
+    // Steps of little more than 2: of the pairs of a box some come to 1, others do not.
+    const Bank whole = make_bank(box(), {517}, {258}, Edge::renormalize);
+    const ByteBanks banks = make_byte_banks(whole, whole);
+    bool has_13 = false, has_14 = false;
+    for (int first = 0; first < 258; first += 43) {
+        const Bank bank = make_bank(box(), {517}, Axis{258}.cells(first, first + 43), Edge::renormalize);
+        const ByteBanks part = make_byte_banks(bank, bank);
+        for (int i = 0; i < 43; ++i) {
+            ASSERT_EQ(part.y.bits_of(i), banks.y.bits_of(first + i));
+            ASSERT_EQ(part.x.bits_of(i), banks.x.bits_of(first + i));
+            has_13 |= part.y.bits_of(i) == 13, has_14 |= part.y.bits_of(i) == 14;
+        }
+    }
+    EXPECT_TRUE(has_13 && has_14);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ void combine(const Bank& bank, int begin, int end, float antiring, ConstLines li
 
 /// A bound for the rounding error of a sum of `count` products in float, where sum_abs = sum |w x|; it holds with and
 /// without fused multiply-add (Higham, Accuracy and Stability of Numerical Algorithms, 3.1), weights rounded to float.
+/// So far a constant may drift; that of 1 does not, see make_bank().
 constexpr double dot_bound(int count, double sum_abs) { return (count + 3) * 0x1p-24 * sum_abs; }
 
 }  // namespace bandlimit

@@ -156,12 +156,12 @@ double strip_columns(double rows, int channels, double taps) {
     return std::max(strip_bytes / (rows * channels * sizeof(float)), 16 * taps);
 }
 
-std::vector<Strip> make_strips(const ResizePlan& plan) {
+void add_strips(const ResizePlan& plan, int first, int last, std::vector<Strip>& strips) {
     const double step = static_cast<double>(plan.src.y.count) / plan.dst.y.count;
     const double rows = rows_of_block(plan.channels) * (1 + step) + plan.y.row_info(plan.y.output_count() / 2).count;
-    std::vector<Strip> strips;
-    for (const TileRun& run : tile_runs(plan.x)) {
-        if (!strips.empty()) {
+    const std::size_t before = strips.size();
+    for (const TileRun& run : tile_runs(plan.x, first, last)) {
+        if (strips.size() > before) {
             Strip& strip = strips.back();
             const IndexRange both{std::min(strip.read.begin, run.read.begin), std::max(strip.read.end, run.read.end)};
             const int taps = plan.x.row_info(run.first).count;
@@ -173,16 +173,16 @@ std::vector<Strip> make_strips(const ResizePlan& plan) {
         }
         strips.push_back({{run}, run.read});
     }
-    return strips;
 }
 
-bool resize_floats(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end) {
+bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const SourceRows& source,
+                   const TargetRows& target, int begin, int end) {
     if (plan.radial) {
         const Strip all{{{0, plan.dst.x.count, {}}}, {0, plan.src.x.count}};
         return FloatRun(plan, source, target, all).rows(begin, end);
     }
     bool lost = false;
-    for (const Strip& strip : plan.strips) lost |= FloatRun(plan, source, target, strip).rows(begin, end);
+    for (const Strip& strip : strips) lost |= FloatRun(plan, source, target, strip).rows(begin, end);
     return lost;
 }
 

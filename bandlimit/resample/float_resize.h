@@ -11,12 +11,15 @@ constexpr int rows_of_block(int channels) { return channels < 3 ? 32 : 16; }
 /// an output reads.
 double strip_columns(double rows, int channels, double taps);
 
-/// The strips that the columns of a plan with banks are computed in: one if the rows along x are filtered first.
-std::vector<Strip> make_strips(const ResizePlan& plan);
+/// Appends the strips that output columns [first, last) of a plan with banks are computed in: one if the rows along x
+/// are filtered first.
+void add_strips(const ResizePlan& plan, int first, int last, std::vector<Strip>& strips);
 
-/// Computes rows [begin, end) of the output in one thread; see Resizer::run.
+/// Computes rows [begin, end) of the output in one thread, of these of the plan's strips; a radial kernel has none, and
+/// computes all columns. See Resizer::run.
 ///
 /// memory   the source rows that a block of output rows reads, and one more block, of one strip: about 1 MiB
-bool resize_floats(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end);
+bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const SourceRows& source,
+                   const TargetRows& target, int begin, int end);
 
 }  // namespace bandlimit

@@ -29,8 +29,9 @@ struct ResizePlan {
     Bank x, y;                         ///< of separable kernels
     std::optional<RadialBank> radial;  ///< instead of both
     bool x_first = false;
-    std::vector<Strip> strips;      ///< of separable kernels
-    std::optional<BytePlan> bytes;  ///< where codes of 8 bits may run in integers; refers to x and y
+    std::vector<Strip> strips;             ///< of separable kernels
+    std::optional<BytePlan> bytes;         ///< where codes of 8 bits run in integers; refers to x and y
+    std::vector<Strip> strips_past_bytes;  ///< the columns that integers do not fit
 
     Edge edge_y() const { return options.edge_y.value_or(options.edge); }
     IndexRange rows_read(int first, int last) const {

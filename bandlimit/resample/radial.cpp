@@ -44,7 +44,7 @@ RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double pha
 struct RadialBank::Disc {
     Span x, y, near_x, near_y;
     std::vector<float> weights;
-    double sum = 0;  ///< of the whole disc
+    float sum = 0;  ///< of the whole disc, in the order of row()
 };
 
 RadialBank::RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_x, const Axis& src_y, const Axis& dst_y,
@@ -58,14 +58,18 @@ RadialBank::RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_
       edge_y_(edge_y),
       radius_(kernel.radius) {
     check_radial("RadialBank", kernel);
-    const auto entries = static_cast<std::size_t>(std::ceil(radius_ * table_density)) + 2;
-    for (std::size_t i = 0; i < entries; ++i) table_.push_back(kernel.value(static_cast<double>(i) / table_density));
+    // The last entry lies at the radius, where a kernel may jump to 0, and holds what it jumps from.
+    const double intervals = std::ceil(radius_ * table_density);
+    density_ = intervals / radius_;
+    for (double i = 0; i < intervals; ++i) table_.push_back(kernel.value(i / density_));
+    table_.push_back(kernel.value(std::nextafter(radius_, 0.0)));
+    at_radius_ = kernel.value(radius_);
 }
 
 double RadialBank::table_value(double distance) const {
-    if (distance >= radius_) return 0;
-    const double at = distance * table_density;
-    const auto i = static_cast<std::size_t>(at);
+    if (distance >= radius_) return distance == radius_ ? at_radius_ : 0;
+    const double at = distance * density_;
+    const std::size_t i = std::min(static_cast<std::size_t>(at), table_.size() - 2);
     return std::lerp(table_[i], table_[i + 1], at - static_cast<double>(i));
 }
 
@@ -95,7 +99,7 @@ RadialBank::Disc RadialBank::disc_at(const Position& x, const Position& y) const
         for (int i = disc.x.first; i <= disc.x.last; ++i) {
             const double w = table_value(std::hypot((i - x.fraction) / stretch_x, (j - y.fraction) / stretch_y));
             disc.weights.push_back(static_cast<float>(w));
-            disc.sum += w;
+            disc.sum += disc.weights.back();
         }
     return disc;
 }
@@ -110,7 +114,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
         if (found == discs.end()) found = discs.emplace(at_x.phase, disc_at(at_x, at_y)).first;
         const Disc& disc = found->second;
         std::fill(sums.begin(), sums.end(), 0.0f);
-        double read = 0;  // sum of the weights that are not dropped
+        float read = 0;  // sum of the weights that are not dropped, rounded as the sum of ones is
         bool has_near = false;
         const float* weight = disc.weights.data();
         for (int j = disc.y.first; j <= disc.y.last; ++j) {
@@ -123,7 +127,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
                 const bool is_dropped =
                     (source < 0 && edge_x_ == Edge::renormalize) || (!line && edge_y_ == Edge::renormalize);
                 if (*weight == 0 || is_dropped) continue;
-                read += static_cast<double>(*weight);
+                read += *weight;
                 if (source < 0 || !line) continue;
                 const bool is_near = near_row && k >= disc.near_x.first && k <= disc.near_x.last;
                 for (int c = 0; c < channels; ++c) {
@@ -138,7 +142,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
             }
         }
         const bool rescales = edge_x_ == Edge::renormalize || edge_y_ == Edge::renormalize;
-        const double divisor = rescales ? read : disc.sum;
+        const auto divisor = static_cast<double>(rescales ? read : disc.sum);
         if (!(std::abs(divisor) > 1e-9))
             fail("RadialBank: output (", i, ", ", y,
                  ") has no weight inside the source; use Edge::clamp, or axes that overlap");

@@ -27,11 +27,11 @@ RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double pha
 ///
 /// The kernel is widened per axis to the pitch of the target where that is coarser (to an ellipse, if the axes differ).
 /// Weights are normalised for each output; under renormalize and zero samples outside are left out (zero keeps the
-/// weights of the whole disc as the divisor). The kernel is read from a table with linear interpolation.
+/// weights of the whole disc as the divisor). The kernel, which may jump at its radius but nowhere else, is read from a
+/// table with linear interpolation. What is 1 everywhere stays exactly 1, but beside borders under zero.
 ///
 /// error   of the table: below 1e-7 of the peak; sums are fused multiply-adds in float, row by row: the same bits for
-/// any
-///         number of threads and any part of the target
+///         any number of threads and any part of the target
 /// cost    about 4 radius^2 multiply-adds per sample and channel (radius after widening), and as many table look-ups
 /// per
 ///         pair of distinct phases; no vector instructions
@@ -58,7 +58,9 @@ private:
     int width_, height_, outputs_;
     Edge edge_x_, edge_y_;
     double radius_;
-    std::vector<double> table_;
+    double density_ = 1;         ///< table intervals per unit
+    std::vector<double> table_;  ///< of the kernel from 0 up to the radius
+    double at_radius_ = 0;       ///< what it is there
 };
 
 }  // namespace bandlimit

@@ -39,6 +39,26 @@ double cost(double step_first, double step_second) {
     return taps(step_first) / std::abs(step_first) + taps(step_second) / std::abs(step_first * step_second);
 }
 
+void plan_bytes(ResizePlan& plan) {
+    plan.bytes = make_byte_plan(make_byte_banks(plan.x, plan.y));
+    for_each_run(plan.bytes->banks.x, 0, plan.dst.x.count, [&](int first, int last, bool fits) {
+        if (!fits) add_strips(plan, first, last, plan.strips_past_bytes);
+    });
+}
+
+/// Computes output rows [begin, end): what fits them in integers, the rest in floats. Returns whether a value that is
+/// not finite was lost.
+bool resize_codes(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end) {
+    const auto from = std::get<View<const std::uint8_t>>(source.samples);
+    const auto to = std::get<View<std::uint8_t>>(target.samples);
+    bool lost = false;
+    for_each_run(plan.bytes->banks.y, begin, end, [&](int first, int last, bool fits) {
+        if (fits) resize_bytes(*plan.bytes, from, source.first_row, to, target.first_row, first, last);
+        lost |= resize_floats(plan, fits ? plan.strips_past_bytes : plan.strips, source, target, first, last);
+    });
+    return lost;
+}
+
 }  // namespace
 
 Kernel auto_kernel(const Axis& src, const Axis& dst) {
@@ -50,7 +70,7 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
     if (!(options.antiring >= 0 && options.antiring <= 1))
         fail("Resizer: antiring = ", options.antiring, "; pass 0 (off) to 1 (no overshoot)");
     auto plan =
-        std::make_unique<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}, {}});
+        std::make_unique<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}, {}, {}});
     const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
     if (kernel && is_radial(*kernel)) {
         plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge, plan->edge_y());
@@ -60,9 +80,8 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
         plan->y = bank_of(options.reconstruction, src.y, dst.y, plan->edge_y(), plan->kernel_y);
         const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
         plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
-        plan->strips = make_strips(*plan);
-        if (has_byte_vectors())
-            if (const auto banks = make_byte_banks(plan->x, plan->y)) plan->bytes = make_byte_plan(*banks);
+        add_strips(*plan, 0, dst.x.count, plan->strips);
+        if (has_byte_vectors()) plan_bytes(*plan);
     }
     plan_ = std::move(plan);
 }
@@ -109,6 +128,9 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
         fail("Resizer::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
              " with ", to.channels, "; need ", plan_->src.x.count, " with ", plan_->channels, " and ",
              plan_->dst.x.count, " with ", out_channels);
+    check_encoding("Resizer::run", source.encoding, from.channels);
+    check_encoding("Resizer::run", target.encoding, to.channels);
+    check_apart("Resizer::run", source.samples, target.samples);
     if (!target.background.empty() &&
         (source.encoding.alpha < 0 || target.background.size() != static_cast<std::size_t>(out_channels)))
         fail("Resizer::run: a background of ", target.background.size(), " channels; it needs an alpha channel and ",
@@ -118,16 +140,16 @@ bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel p
     if (needed.begin < source.first_row || needed.end > source.first_row + from.height)
         fail("Resizer::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
              needed.begin, " to ", needed.end, " are needed");
-    const auto* codes_in = std::get_if<View<const std::uint8_t>>(&source.samples);
-    const auto* codes_out = std::get_if<View<std::uint8_t>>(&target.samples);
-    const bool in_integers = plan_->bytes && codes_in && codes_out && plan_->is_plain(source.encoding, target);
+    const bool are_codes = std::holds_alternative<View<const std::uint8_t>>(source.samples) &&
+                           std::holds_alternative<View<std::uint8_t>>(target.samples);
+    const bool in_integers = plan_->bytes && are_codes && plan_->is_plain(source.encoding, target);
     std::atomic<bool> lost = false;
     const int share = (to.height + parallel.count() - 1) / parallel.count();
     parallel_for(to.height, std::max(share, smallest_run), parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         const int first = target.first_row + static_cast<int>(begin), last = target.first_row + static_cast<int>(end);
-        if (in_integers)
-            return resize_bytes(*plan_->bytes, *codes_in, source.first_row, *codes_out, target.first_row, first, last);
-        if (resize_floats(*plan_, source, target, first, last)) lost = true;
+        if (in_integers ? resize_codes(*plan_, source, target, first, last)
+                        : resize_floats(*plan_, plan_->strips, source, target, first, last))
+            lost = true;
     });
     return lost;
 }

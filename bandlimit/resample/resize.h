@@ -92,7 +92,7 @@ public:
     /// Computes the rows of `target` from those of `source`, which must hold rows_needed() of them.
     ///
     /// returns  whether a value that is not finite was stored as the code 0
-    /// throws   Error if sizes, channels or rows do not fit
+    /// throws   Error if sizes, channels, rows or encodings do not fit, and where source and target overlap
     bool run(const SourceRows& source, const TargetRows& target, Parallel parallel = {}) const;
 
 private:

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <string>
@@ -15,6 +17,7 @@
 #include "bandlimit/core/error.h"
 #include "bandlimit/math/random.h"
 #include "bandlimit/resample/apply.h"
+#include "bandlimit/resample/byte_bank.h"
 #include "bandlimit/resample/combine.h"
 #include "bandlimit/resample/naive_test.h"
 #include "bandlimit/resample/operator_checker_test.h"
@@ -363,6 +366,155 @@ TEST(Resample, IsTheResizerOnWholeImages) {
     for (const Layout layout : {Layout::planar, Layout::interleaved})
         expect_same<float>(std::as_const(expected).view(),
                            resample(src.view(), 20, 3, {.reconstruction = tent()}, {}, layout).view(), "");
+}
+
+std::vector<Kernel> all_kernels() {
+    std::vector<Kernel> kernels;
+    for (const KernelInfo& info : kernel_list()) kernels.push_back(parse_kernel(info.example));
+    return kernels;
+}
+
+/// A picture of each depth, of noise that reaches the extreme codes.
+std::vector<AnyImage> noise_of_all_depths(int width, int height, int channels) {
+    const Image<float> values = noise(width, height, channels, 4);
+    std::vector<AnyImage> images;
+    for (const Depth depth : all_depths()) {
+        images.push_back(make_image(depth, width, height, channels));
+        for (int y = 0; y < height; ++y) {
+            std::vector<float> row(std::size_t(width * channels));
+            decode_row(View<const float>(values.view()), y, {}, false, row);
+            encode_row(row, false, view_of(images.back()), y, {});
+        }
+    }
+    return images;
+}
+
+/// The bits of a part of a picture, row after row.
+std::vector<std::uint32_t> bits_of(const AnyConstView& view, const Window& w) {
+    std::vector<std::uint32_t> bits;
+    std::visit(
+        [&](const auto& v) {
+            for (int y = w.y; y < w.y + w.height; ++y)
+                for (int x = w.x; x < w.x + w.width; ++x)
+                    for (int c = 0; c < v.channels; ++c) {
+                        std::uint32_t sample = 0;
+                        std::memcpy(&sample, &v(x, y, c), sizeof(v(x, y, c)));
+                        bits.push_back(sample);
+                    }
+        },
+        view);
+    return bits;
+}
+
+/// Compares parts of `size` x `size`, side by side, with the whole, at all depths.
+void expect_parts_are_those_of_the_whole(std::vector<AnyImage>& sources, const Grid& src, const Grid& dst,
+                                         const ResizeOptions& options, int size, const std::string& what) {
+    const int channels = shape_of(view_of(sources[0])).channels;
+    const auto run = [&](const Resizer& resizer, AnyImage& source, const Grid& to) {
+        AnyImage image = make_image(depth_of(const_view(view_of(source))), to.x.count, to.y.count, channels);
+        resizer.run({const_view(view_of(source)), 0, {}}, {view_of(image), 0, {}, {}}, {1});
+        return image;
+    };
+    const Resizer whole(src, dst, channels, options);
+    std::vector<AnyImage> expected;
+    for (AnyImage& source : sources) expected.push_back(run(whole, source, dst));
+    for (int y = 0; y < dst.y.count; y += size)
+        for (int x = 0; x < dst.x.count; x += size) {
+            const Window w{x, y, std::min(size, dst.x.count - x), std::min(size, dst.y.count - y)};
+            const Grid to = part_of(dst, w);
+            const Resizer part(src, to, channels, options);
+            for (std::size_t i = 0; i < sources.size(); ++i) {
+                AnyImage found = run(part, sources[i], to);
+                ASSERT_EQ(bits_of(const_view(view_of(found)), {0, 0, w.width, w.height}),
+                          bits_of(const_view(view_of(expected[i])), w))
+                    << what << ' ' << name_of(all_depths()[i]) << ", part " << x << ' ' << y << " of " << size;
+            }
+        }
+}
+
+/// Whether every output reads something: a narrow kernel finds nothing beside the picture under zero and renormalize.
+bool has_weights(AnyImage& source, const Grid& src, const Grid& dst, const ResizeOptions& options) {
+    AnyImage image = make_image(Depth::u8, dst.x.count, dst.y.count, 1);
+    try {
+        Resizer(src, dst, 1, options).run({const_view(view_of(source)), 0, {}}, {view_of(image), 0, {}, {}});
+    } catch (const Error&) {
+        return false;
+    }
+    return true;
+}
+
+TEST(Resizer, PartsOfAnySizeGiveTheBitsOfTheWholeAtEveryDepth) {
+    std::vector<AnyImage> sources = noise_of_all_depths(29, 37, 1);
+    const Grid src{{29, 0, 29}, {37, 0, 37}};
+    // Smaller, larger, by about half; and reaching beside the picture, where edges cut rows to a few weights.
+    const Grid targets[] = {
+        {{14, 0, 29}, {18, 0, 37}}, {{40, 0, 29}, {43, 37, 0}}, {{11, -1.25, 27.25}, {23, 3, 38.25}}};
+    int round = 0;
+    for (const Kernel& kernel : all_kernels())
+        for (const Edge edge : all_edges())
+            for (const Grid& dst : targets) {
+                const ResizeOptions options{.reconstruction = kernel, .edge = edge};
+                const int size = std::array{8, 13, 22}[std::size_t((round + round / 3) % 3)];
+                ++round;
+                if (!has_weights(sources[0], src, dst, options)) continue;
+                const std::string what = message(kernel.name, ' ', name_of(edge), ' ', dst.x.count);
+                ASSERT_NO_FATAL_FAILURE(expect_parts_are_those_of_the_whole(sources, src, dst, options, size, what));
+            }
+}
+
+TEST(Resizer, CodesOfBoxesNearAHalfAreThoseOfTheWhole) {
+    std::vector<AnyImage> sources = noise_of_all_depths(6, 517, 4);
+    const Grid src{{6}, {517}}, dst{{6}, {258}};
+    expect_parts_are_those_of_the_whole(sources, src, dst, {.reconstruction = box()}, 43, "box");
+}
+
+TEST(Resizer, RowsOfCodesThatDoNotFitIntegersRunInFloats) {
+    // Beside the border 0.9 is cut off, and what is left is scaled by 10.
+    const Taps taps{-1, {0.9, -0.4, 0.5}};
+    std::vector<AnyImage> sources = noise_of_all_depths(40, 40, 1);
+    Image<float> values(40, 40), expected(40, 40);
+    Image<std::uint8_t> found(40, 40);
+    for (int y = 0; y < 40; ++y) decode_row(const_view(view_of(sources[0])), y, {}, false, {&values.view()(0, y), 40});
+    const Grid grid{{40}, {40}};
+    const Bank bank = make_bank(taps, 40, Edge::renormalize);
+    const ByteBanks banks = make_byte_banks(bank, bank);
+    EXPECT_FALSE(banks.x.fits(0) || banks.y.fits(0));
+    EXPECT_TRUE(banks.x.fits(1) && banks.y.fits(1));
+    const Resizer resizer(grid, grid, 1, {.reconstruction = taps});
+    resizer.run({View<const float>(values.view()), 0, {}}, {expected.view(), 0, {}, {}});
+    resizer.run({const_view(view_of(sources[0])), 0, {}}, {found.view(), 0, {}, {}});
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x)
+            ASSERT_NEAR(found.view()(x, y), 255 * std::clamp(expected.view()(x, y), 0.0f, 1.0f), x && y ? 0.7 : 0.5001)
+                << x << ' ' << y;
+    expect_parts_are_those_of_the_whole(sources, grid, grid, {.reconstruction = taps}, 17, "taps");
+}
+
+TEST(Resizer, OnesStayOnesOnEveryInstructionSet) {
+    const auto is_one = [](const Image<float>& image) {
+        const float* const begin = image.view().data;
+        return std::all_of(begin, begin + image.width() * image.height() * image.channels(),
+                           [](float x) { return x == 1; });
+    };
+    const auto ones = [](int width, int height, int channels) {
+        Image<float> image(width, height, channels, Layout::interleaved);
+        std::fill_n(image.view().data, width * height * channels, 1.0f);
+        return image;
+    };
+    const Image<float> small = ones(31, 37, 3), wide = ones(4000, 5, 1), high = ones(3, 4000, 4);
+    for_each_instruction_set([&](const std::string& target, bool) {
+        for (const Kernel& kernel : all_kernels())
+            for (const Edge edge : {Edge::clamp, Edge::renormalize}) {
+                const ResizeOptions options{.reconstruction = kernel, .edge = edge};
+                const std::string what = message(target, ' ', kernel.name, ' ', name_of(edge));
+                for (const auto& [width, height] : {std::pair{12, 80}, {50, 60}, {31, 37}})
+                    EXPECT_TRUE(is_one(resample(small.view(), width, height, options))) << what << ' ' << width;
+                // Discs of a million samples take too long; and both edges take the same way.
+                if (is_radial(kernel) || edge == Edge::clamp) continue;
+                EXPECT_TRUE(is_one(resample(wide.view(), 9, 4, options))) << what;
+                EXPECT_TRUE(is_one(resample(high.view(), 2, 9, options))) << what;
+            }
+    });
 }
 
 }  // namespace

@@ -366,6 +366,9 @@ bool TermFilter::run(const SourceRows& source, const TargetRows& target, Paralle
     if (from.width != source_width_ || to.width != width_ || from.channels != to.channels || from.channels < 1)
         fail("TermFilter::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
              " with ", to.channels, "; need ", source_width_, " and ", width_, " with equal channels");
+    check_encoding("TermFilter::run", source.encoding, from.channels);
+    check_encoding("TermFilter::run", target.encoding, to.channels);
+    check_apart("TermFilter::run", source.samples, target.samples);
     if (to.height == 0) return false;
     const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
     if (needed.begin < needed.end && (needed.begin < source.first_row || needed.end > source.first_row + from.height))

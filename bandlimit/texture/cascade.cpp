@@ -28,6 +28,7 @@ MipCascade::MipCascade(int width, int height, int channels, const Encoding& stor
     if (width < 1 || height < 1 || levels < 1 || levels > mip_count(width, height))
         fail("MipCascade: ", levels, " levels of ", width, " x ", height, "; pass a size of at least 1 x 1 and 1 to ",
              mip_count(std::max(width, 1), std::max(height, 1)), " levels");
+    check_encoding("MipCascade", stored, channels);
     for (int level = 1; level < levels; ++level) {
         const Grid above{{mip_length(width, level - 1)}, {mip_length(height, level - 1)}};
         const Grid grid{{mip_length(width, level)}, {mip_length(height, level)}};

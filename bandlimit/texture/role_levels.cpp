@@ -108,6 +108,7 @@ void RoleLevels::check(const Encoding& stored, const MipOptions& options) const 
         fail("make_mips: alpha is channel ", stored.alpha, " of ", c, "; pass the last one of 2 or 4, or -1");
     if (is_light() && stored.alpha >= 0 && to != 4)
         fail("make_mips: ", role, " with alpha in ", to, " channels; pass a target of 4, or Role::data");
+    check_encoding("make_mips", stored, c);
     if (role_ == Role::alpha_tested && (stored.alpha < 0 || to != 4))
         fail("make_mips: nothing to test without alpha; pass a picture and a target with it, or Role::color");
     if (!(options.alpha_threshold > 0 && options.alpha_threshold <= 1))
