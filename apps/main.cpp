@@ -12,6 +12,7 @@
 
 #include "apps/command.h"
 #include "apps/common.h"
+#include "bandlimit/core/targets.h"
 
 namespace {
 
@@ -48,6 +49,7 @@ void keep_no_freed_memory() {
 std::optional<int> parse(app::Program& program, int argc, char** argv) {
     try {
         program.cli.parse(argc, argv);
+        current_target();  // throws where BANDLIMIT_TARGETS holds none
         return {};
     } catch (const CLI::Success& asks) {  // for help or the version
         program.selected = [&program, asks] { program.cli.exit(asks); };

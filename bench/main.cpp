@@ -185,7 +185,8 @@ void read_options(CLI::App& app, Options& options) {
     app.add_option("--only", options.only, "Beside bandlimit only programs whose name contains one of these")
         ->delimiter(',');
     app.add_flag("--alone", options.alone, "bandlimit alone");
-    app.add_option("--targets", options.targets, "Instruction sets of bandlimit, a row each: all, avx2, sse4")
+    app.add_option("--targets", options.targets,
+                   "Instruction sets of bandlimit, a row each: all (the widest), avx2, ...")
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--threads", options.threads, "How many threads")

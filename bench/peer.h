@@ -33,9 +33,8 @@ struct Peer {
     std::function<std::optional<Task>(const Case& c, const Buffers& buffers, int threads)> prepare;
 };
 
-/// bandlimit, with one of these sets of instructions: "all" that the processor has, "avx2" and less, "sse4" and less.
-/// Throws Error for another name.
-Peer bandlimit_peer(const std::string& targets);
+/// bandlimit on the target of this name, or on the widest for "all". Throws Error for another name.
+Peer bandlimit_peer(const std::string& name);
 
 /// A program that speaks the protocol of bench/README.md, started by `command` in a shell. Empty if it does not answer.
 std::optional<Peer> process_peer(const std::string& command);

@@ -1,8 +1,6 @@
-#include <hwy/targets.h>
-
 #include <memory>
 
-#include "bandlimit/core/error.h"
+#include "bandlimit/core/targets.h"
 #include "bandlimit/kernel/kernel.h"
 #include "bandlimit/resample/resize.h"
 #include "bench/peer.h"
@@ -10,23 +8,8 @@
 namespace bandlimit::bench {
 namespace {
 
-/// The instruction sets that a name of --targets leaves, as Highway's mask; 0 means all.
-std::int64_t mask_of(const std::string& targets) {
-    constexpr std::int64_t avx512 = HWY_AVX3 | HWY_AVX3_DL;
-    if (targets == "all") return 0;
-    if (targets == "avx2") return hwy::SupportedTargets() & ~avx512;
-    if (targets == "sse4") return hwy::SupportedTargets() & ~avx512 & ~std::int64_t{HWY_AVX2};
-    fail("targets \"", targets, "\" are unknown; pass all, avx2 or sse4");
-}
-
-/// While it lives, Highway has no other instruction sets.
-class Limited {
-public:
-    explicit Limited(std::int64_t mask) { hwy::SetSupportedTargetsForTest(mask); }
-    ~Limited() { hwy::SetSupportedTargetsForTest(0); }
-    Limited(const Limited&) = delete;
-    Limited& operator=(const Limited&) = delete;
-};
+/// What a name of --targets means.
+Target target_of(const std::string& name) { return name == "all" ? supported_targets().back() : parse_target(name); }
 
 /// A view of interleaved samples that are somebody's bytes.
 template <class T>
@@ -50,19 +33,18 @@ std::vector<Resizer> resizers_for(const Case& c) {
     return resizers;
 }
 
-Task prepare(const Case& c, const Buffers& buffers, int threads, std::int64_t mask) {
-    const Limited limited(mask);
+Task prepare(const Case& c, const Buffers& buffers, int threads, Target target) {
     const auto resizers = std::make_shared<std::vector<Resizer>>(resizers_for(c));
     const Encoding encoding = c.linear ? Encoding{Transfer::srgb, 3, false} : Encoding{};
     return timed([=, &buffers](int k) {
-        const Limited while_it_runs(mask);
+        const TargetScope while_it_runs(target);
         // A View<const T> is made of a View<T>; nothing is written to the source.
         AnyView from =
             any_view(c, const_cast<std::byte*>(buffers.sources[static_cast<std::size_t>(k)].data()), c.width, c.height);
         const std::vector<Level> levels = levels_of(c);
         for (std::size_t i = 0; i < levels.size(); ++i) {
-            std::byte* target = buffers.targets[static_cast<std::size_t>(k)].data() + levels[i].offset;
-            const AnyView to = any_view(c, target, levels[i].width, levels[i].height);
+            std::byte* out = buffers.targets[static_cast<std::size_t>(k)].data() + levels[i].offset;
+            const AnyView to = any_view(c, out, levels[i].width, levels[i].height);
             (*resizers)[i].run({const_view(from), 0, encoding}, {to, 0, encoding, {}}, {threads});
             from = to;
         }
@@ -71,12 +53,12 @@ Task prepare(const Case& c, const Buffers& buffers, int threads, std::int64_t ma
 
 }  // namespace
 
-Peer bandlimit_peer(const std::string& targets) {
-    const std::int64_t mask = mask_of(targets);
-    return {.name = targets == "all" ? "**bandlimit**" : "bandlimit, " + targets + " and less",
-            .note = targets == "all" ? "Resizer, made beforehand; the caller's target" : "",
+Peer bandlimit_peer(const std::string& name) {
+    const Target target = target_of(name);
+    return {.name = name == "all" ? "**bandlimit**" : "bandlimit, " + name,
+            .note = name == "all" ? "Resizer, made beforehand; the caller's target" : "",
             .prepare = [=](const Case& c, const Buffers& buffers, int threads) {
-                return std::optional(prepare(c, buffers, threads, mask));
+                return std::optional(prepare(c, buffers, threads, target));
             }};
 }
 

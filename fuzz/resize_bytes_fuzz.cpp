@@ -35,11 +35,10 @@ void check(Bytes bytes) {
     const int new_width = 1 + bytes.below(200), new_height = 1 + bytes.below(60);
     const Bank x = any_bank(bytes, width, new_width), y = any_bank(bytes, height, new_height);
     const ByteBanks banks = make_byte_banks(x, y);
-    if (!has_byte_vectors()) return;
     const Image<std::uint8_t> src = any_image(bytes, width, height, channels);
     Image<std::uint8_t> fast = any_image(bytes, new_width, new_height, channels),
                         exact(new_width, new_height, channels);
-    resize_bytes_scalar(banks, src.view(), exact.view());
+    resize_bytes_scalar(banks, src.view(), 0, exact.view(), 0);
     const int cut = bytes.below(new_height + 1);
     const BytePlan plan = make_byte_plan(banks);
     for (const auto& [begin, end] : {std::pair{0, cut}, {cut, new_height}})

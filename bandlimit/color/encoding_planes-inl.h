@@ -8,6 +8,7 @@
 
 #include "bandlimit/color/half.h"
 #include "bandlimit/color/srgb_codes.h"
+#include "bandlimit/core/dispatch.h"
 #include "bandlimit/core/transpose4-inl.h"
 
 #if defined(BANDLIMIT_COLOR_ENCODING_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -17,7 +18,7 @@
 #define BANDLIMIT_COLOR_ENCODING_PLANES_INL_H
 #endif
 
-#if HWY_TARGET != HWY_SCALAR
+#if !BANDLIMIT_NO_VECTORS
 
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
@@ -25,8 +26,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Whether the conversions of half are instructions; elsewhere half is left to the scalar form.
-constexpr bool kHalf = HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ||
-                       (HWY_TARGET == HWY_NEON && HWY_ARCH_ARM_A64);
+constexpr bool kHalf =
+    HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3_DL || (HWY_TARGET == HWY_NEON && HWY_ARCH_ARM_A64);
 
 /// Whether MulAdd rounds once.
 constexpr bool kFused = HWY_NATIVE_FMA;
@@ -73,7 +74,7 @@ HWY_INLINE hn::Vec<RawTag<T>> Narrow(Lanes<T> lanes) {
     if constexpr (std::is_same_v<T, float>) return lanes;
     else if constexpr (std::is_same_v<T, Half>)
         return hn::BitCast(d, hn::DemoteTo(hn::Rebind<hwy::float16_t, decltype(df)>(), lanes));
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3_DL
     // Highway 1.0.3 truncates to bytes by the wrong permutation where it has AVX3_DL.
     else if constexpr (sizeof(T) == 1) return hn::Vec<RawTag<T>>{_mm512_cvtepi32_epi8(lanes.raw)};
 #endif
@@ -222,7 +223,7 @@ HWY_INLINE void StoreStored(Lanes<T> (&p)[C], const Order& order, Samples<T> s) 
 /// known to be full: it would wait for the gather of the pixels before. A mask that they cannot know, and zeros, do
 /// not.
 HWY_INLINE VF Gather(const float* base, VI index) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3_DL
     __mmask16 all = 0xffff;
     asm("" : "+Yk"(all));
     return VF{_mm512_mask_i32gather_ps(_mm512_setzero_ps(), all, index.raw, base, sizeof(float))};
@@ -283,6 +284,6 @@ HWY_INLINE VI SrgbCode(const SrgbChordTable& table, VF light) {
 }  // namespace bandlimit
 HWY_AFTER_NAMESPACE();
 
-#endif  // HWY_TARGET != HWY_SCALAR
+#endif  // !BANDLIMIT_NO_VECTORS
 
 #endif  // BANDLIMIT_COLOR_ENCODING_PLANES_INL_H

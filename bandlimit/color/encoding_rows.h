@@ -28,7 +28,7 @@ bool encode_row_scalar(std::span<const float> row, bool premultiplied, const Any
 void composite_row_scalar(std::span<const float> row, bool premultiplied, int channels, int alpha,
                           std::span<const float> background, std::span<float> out);
 
-// The same by vectors, on the widest instruction set that this machine has: the same bits, but for those of a NaN.
+// The same on current_target(): the same bits, but for those of a NaN.
 void decode_row_simd(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied,
                      std::span<float> row);
 bool encode_row_simd(std::span<const float> row, bool premultiplied, const AnyView& image, int y,

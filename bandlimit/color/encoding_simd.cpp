@@ -7,25 +7,6 @@
 #include "bandlimit/color/encoding_rows.h"
 #include "bandlimit/color/srgb_codes.h"
 
-#ifdef BANDLIMIT_SCALAR
-
-namespace bandlimit {
-void decode_row_simd(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied,
-                     std::span<float> row) {
-    decode_row_scalar(image, y, stored, premultiplied, row);
-}
-bool encode_row_simd(std::span<const float> row, bool premultiplied, const AnyView& image, int y,
-                     const Encoding& stored) {
-    return encode_row_scalar(row, premultiplied, image, y, stored);
-}
-void composite_row_simd(std::span<const float> row, bool premultiplied, int channels, int alpha,
-                        std::span<const float> background, std::span<float> out) {
-    composite_row_scalar(row, premultiplied, channels, alpha, background, out);
-}
-}  // namespace bandlimit
-
-#else
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bandlimit/color/encoding_simd.cpp"
 #include <hwy/foreach_target.h>
@@ -33,13 +14,13 @@ void composite_row_simd(std::span<const float> row, bool premultiplied, int chan
 #include <hwy/highway.h>
 
 #include "bandlimit/color/encoding_planes-inl.h"
+#include "bandlimit/core/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR
+#if BANDLIMIT_NO_VECTORS
 
 void DecodeRow(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied, std::span<float> row) {
     decode_row_scalar(image, y, stored, premultiplied, row);
@@ -53,6 +34,8 @@ void CompositeRow(std::span<const float> row, bool premultiplied, int channels, 
 }
 
 #else
+
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// Exchanges the plane of alpha, if any, with the last one, where the loops below expect it.
 template <class V, int C>
@@ -303,7 +286,7 @@ void CompositeRow(std::span<const float> row, bool premultiplied, int channels, 
     }
 }
 
-#endif  // HWY_TARGET == HWY_SCALAR
+#endif  // BANDLIMIT_NO_VECTORS
 
 }  // namespace HWY_NAMESPACE
 }  // namespace bandlimit
@@ -311,23 +294,21 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace bandlimit {
-HWY_EXPORT(DecodeRow);
-HWY_EXPORT(EncodeRow);
-HWY_EXPORT(CompositeRow);
+BANDLIMIT_EXPORT(DecodeRow);
+BANDLIMIT_EXPORT(EncodeRow);
+BANDLIMIT_EXPORT(CompositeRow);
 
 void decode_row_simd(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied,
                      std::span<float> row) {
-    HWY_DYNAMIC_DISPATCH(DecodeRow)(image, y, stored, premultiplied, row);
+    BANDLIMIT_DISPATCH(DecodeRow)(image, y, stored, premultiplied, row);
 }
 bool encode_row_simd(std::span<const float> row, bool premultiplied, const AnyView& image, int y,
                      const Encoding& stored) {
-    return HWY_DYNAMIC_DISPATCH(EncodeRow)(row, premultiplied, image, y, stored);
+    return BANDLIMIT_DISPATCH(EncodeRow)(row, premultiplied, image, y, stored);
 }
 void composite_row_simd(std::span<const float> row, bool premultiplied, int channels, int alpha,
                         std::span<const float> background, std::span<float> out) {
-    HWY_DYNAMIC_DISPATCH(CompositeRow)(row, premultiplied, channels, alpha, background, out);
+    BANDLIMIT_DISPATCH(CompositeRow)(row, premultiplied, channels, alpha, background, out);
 }
 }  // namespace bandlimit
 #endif
-
-#endif  // BANDLIMIT_SCALAR

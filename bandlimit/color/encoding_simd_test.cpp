@@ -1,6 +1,5 @@
-// The vector forms against the scalar definition, on every instruction set that this machine has.
+// The vector forms against the scalar definition, on every target that this machine has.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "bandlimit/color/encoding_rows.h"
 #include "bandlimit/color/srgb_codes.h"
 #include "bandlimit/core/image.h"
+#include "bandlimit/core/targets_test.h"
 #include "bandlimit/math/random.h"
 
 namespace bandlimit {
@@ -21,23 +21,6 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float denormal = std::numeric_limits<float>::denorm_min();
 
 using Row = std::vector<float>;
-
-/// Calls test() with each instruction set in turn as the one that is chosen.
-template <class Test>
-void on_every_target(Test test) {
-    const auto choose = [](std::int64_t targets) {
-        hwy::SetSupportedTargetsForTest(targets);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    };
-    for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-        const std::int64_t target = left & -left;
-        SCOPED_TRACE(hwy::TargetName(target));
-        choose(target);
-        test();
-        choose(0);
-        if (testing::Test::HasFatalFailure()) return;
-    }
-}
 
 bool same(float a, float b) {
     return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
@@ -160,7 +143,7 @@ void compare(const Shape& s, const Meaning& m, Random& random) {
 }
 
 TYPED_TEST(Vectors, EveryWidthChannelLayoutAndMeaning) {
-    on_every_target([] {
+    for_each_target([](Target) {
         Random random(7);
         for (int channels = 1; channels <= 5; ++channels)
             for (const Meaning& m : meanings(channels))
@@ -175,7 +158,7 @@ TYPED_TEST(Vectors, EveryWidthChannelLayoutAndMeaning) {
 }
 
 TYPED_TEST(Vectors, StridesLongerThanABlock) {
-    on_every_target([] {
+    for_each_target([](Target) {
         Random random(8);
         for (const int layout : {0, 1, 3, 4})
             for (const int width : {255, 256, 257, 700})
@@ -207,7 +190,7 @@ void compare_codes(const Row& row, Transfer transfer, bool lost) {
     const int width = static_cast<int>(row.size());
     Image<Code> expected(width, 1), image(width, 1);
     ASSERT_EQ(encode_row_scalar(row, false, expected.view(), 0, {transfer}), lost);
-    on_every_target([&] {
+    for_each_target([&](Target) {
         ASSERT_EQ(encode_row(row, false, image.view(), 0, {transfer}), lost);
         for (int x = 0; x < width; ++x)
             ASSERT_EQ(image.view()(x, 0), expected.view()(x, 0)) << std::hexfloat << row[static_cast<std::size_t>(x)];
@@ -238,7 +221,7 @@ TYPED_TEST(CodeVectors, EveryCodeDecodesAlike) {
     for (const Transfer transfer : {Transfer::linear, Transfer::srgb}) {
         Row expected(static_cast<std::size_t>(largest) + 1), row(expected);
         decode_row_scalar(View<const TypeParam>(image.view()), 0, {transfer}, false, expected);
-        on_every_target([&] {
+        for_each_target([&](Target) {
             decode_row(View<const TypeParam>(image.view()), 0, {transfer}, false, row);
             ASSERT_TRUE(same_samples(row, expected));
         });
@@ -254,7 +237,7 @@ TEST(HalfVectors, EveryHalfDecodesAndEveryRoundingIsTheSame) {
             middles.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(near)));
     Image<Half> expected(static_cast<int>(middles.size()), 1), halves(expected.clone());
     encode_row_scalar(middles, false, expected.view(), 0, {});
-    on_every_target([&] {
+    for_each_target([&](Target) {
         Row row(0x10000);
         decode_row(View<const Half>(image.view()), 0, {}, false, row);
         for (std::size_t bits = 0; bits < row.size(); ++bits)
@@ -266,7 +249,7 @@ TEST(HalfVectors, EveryHalfDecodesAndEveryRoundingIsTheSame) {
 }
 
 TEST(CompositeVectors, EveryWidthAndChannel) {
-    on_every_target([] {
+    for_each_target([](Target) {
         Random random(9);
         for (int channels = 1; channels <= 5; ++channels)
             for (int alpha = 0; alpha < channels; ++alpha)

@@ -120,7 +120,7 @@ TEST(Overlap, IsRefusedByEveryFilterFromAViewToAView) {
         EXPECT_THROW(run_boosted(convolution, 2, true, {a, 0, {}}, {b, 0, {}, {}}), Error);
     }
     Image<std::uint8_t> codes(8, 8);
-    EXPECT_THROW(resize_bytes_scalar(make_byte_banks(bank, bank), codes.view(), codes.view()), Error);
+    EXPECT_THROW(resize_bytes_scalar(make_byte_banks(bank, bank), codes.view(), 0, codes.view(), 0), Error);
     EXPECT_NO_THROW(Resizer(grid, {{4}, {8}}, 2).run({a, 0, {}}, {cropped(beside, 0, 0, 4, 8), 0, {}, {}}));
 }
 

@@ -139,7 +139,7 @@ TEST(Apply, WithAntiringPassesTheOperatorChecker) {
     EXPECT_TRUE(check_operator(op));
 }
 
-TEST(Apply, IsItsScalarDefinitionOnEveryInstructionSet) {
+TEST(Apply, IsItsScalarDefinitionOnEveryTarget) {
     for (const Resampling& r : resamplings())
         for (const double antiring : {0.0, 0.5, 1.0})
             for (const auto& [width, height, channels] : {std::tuple{33, 70, 3}, {64, 1, 1}, {5, 129, 1}, {1, 40, 4}}) {
@@ -148,12 +148,13 @@ TEST(Apply, IsItsScalarDefinitionOnEveryInstructionSet) {
                 Image<float> expected(bank.output_count(), height, channels);
                 apply_scalar(bank, src.view(), expected.view(), antiring);
                 const int n = width;
-                for_each_instruction_set([&](const std::string& name, bool fused) {
+                for_each_target([&](Target target) {
                     const Image<float> result = applied(bank, src.view(), antiring);
                     for_each(result.view(), [&](int x, int y, int c) {
-                        const double bound = fused ? 0 : 2 * dot_bound(r.row(n, x).taps + 3, 2 * largest);
+                        const double bound =
+                            has_fused_multiply_add(target) ? 0 : 2 * dot_bound(r.row(n, x).taps + 3, 2 * largest);
                         ASSERT_NEAR(double(result.view()(x, y, c)), double(expected.view()(x, y, c)), bound)
-                            << name << ' ' << r.kernel.name << ' ' << n << ' ' << x << ' ' << y << ' ' << c;
+                            << r.kernel.name << ' ' << n << ' ' << x << ' ' << y << ' ' << c;
                     });
                 });
             }

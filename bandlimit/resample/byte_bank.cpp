@@ -77,7 +77,8 @@ ByteBanks make_byte_banks(const Bank& x, const Bank& y) {
     return {make_byte_bank(x, bits_along_x), make_byte_bank(y, bits_along_y)};
 }
 
-void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, View<std::uint8_t> dst) {
+void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
+                         int first_target) {
     check_apart("resize_bytes_scalar", src, dst);
     const Bank &x = *banks.x.bank, &y = *banks.y.bank;
     std::vector<int> column(static_cast<std::size_t>(src.width));
@@ -85,13 +86,14 @@ void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, V
         int sum = 0;
         const std::span<const std::int16_t> row = banks.y.row(i);
         for (int j = 0; j < static_cast<int>(row.size()); ++j)
-            sum += row[static_cast<std::size_t>(j)] * src(v, resolve(y.first(i) + j, y.inputs, y.edge), c);
+            sum +=
+                row[static_cast<std::size_t>(j)] * src(v, resolve(y.first(i) + j, y.inputs, y.edge) - first_source, c);
         return rounded(sum, banks.y.bits_of(i) - 6);
     };
     for (int c = 0; c < dst.channels; ++c)
         for (int i = 0; i < dst.height; ++i) {
-            if (!banks.y.fits(i)) continue;
-            for (int v = 0; v < src.width; ++v) column[static_cast<std::size_t>(v)] = along_y(v, i, c);
+            if (!banks.y.fits(first_target + i)) continue;
+            for (int v = 0; v < src.width; ++v) column[static_cast<std::size_t>(v)] = along_y(v, first_target + i, c);
             for (int k = 0; k < dst.width; ++k) {
                 if (!banks.x.fits(k)) continue;
                 int sum = 0;

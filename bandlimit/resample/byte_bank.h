@@ -51,8 +51,10 @@ void for_each_run(const ByteBank& bank, int first, int last, Visit visit) {
 /// out = (sum_j x.row[j] * t[j] + half) >> (x.bits + 6), clamped to 0..255; half is 1/2 of what the shift makes 1.
 /// Outputs whose row along x or y does not fit are left as they are.
 ///
-/// shapes   src [x.inputs x y.inputs x c], dst [x outputs x y outputs x c]
+/// shapes   src [x.inputs x rows x c] holds the stored rows from first_source on that the outputs read, dst
+///          [x outputs x rows x c] the output rows from first_target on
 /// error    at most 1 code from the nearest code of the exact sum; about 1 code in 200 differs from it
-void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, View<std::uint8_t> dst);
+void resize_bytes_scalar(const ByteBanks& banks, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
+                         int first_target);
 
 }  // namespace bandlimit

@@ -7,48 +7,26 @@
 #include <iterator>
 #include <utility>
 
-#if defined(BANDLIMIT_SCALAR) || !(defined(__x86_64__) || defined(_M_X64))
-
-namespace bandlimit {
-bool has_byte_vectors() { return false; }
-void halve_bytes(const std::uint8_t* const*, std::size_t, Pixel, std::uint8_t*) {}
-void spread_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
-void narrow_pixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
-void interleave_bytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
-void combine_byte_rows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
-                       std::span<const std::uint8_t* const>, Pixel, std::int16_t*) {}
-void combine_byte_pairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
-}  // namespace bandlimit
-
-#else
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bandlimit/resample/byte_combine_simd.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
+#include "bandlimit/core/dispatch.h"
 #include "bandlimit/core/transpose4-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+#if BANDLIMIT_NO_VECTORS || !HWY_ARCH_X86
 
-bool HasByteVectors() { return false; }
-void HalveBytes(const std::uint8_t* const*, std::size_t, Pixel, std::uint8_t*) {}
-void SpreadPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
-void NarrowPixels(const std::uint8_t*, int, std::size_t, std::uint8_t*) {}
-void InterleaveBytes(const std::uint8_t* const*, std::size_t, std::uint8_t*) {}
-void CombineByteRows(const ByteColumnTaps&, int, const std::uint8_t* const*, std::size_t, std::size_t,
-                     std::span<const std::uint8_t* const>, Pixel, std::int16_t*) {}
-void CombineBytePairs(const BytePairs&, int, int, const std::int16_t*, Pixel, std::uint8_t* const*) {}
+const ByteLoops* Loops() { return nullptr; }
 
 #else
 
-bool HasByteVectors() { return true; }
+namespace hn = hwy::HWY_NAMESPACE;
 
 using D8 = hn::ScalableTag<std::uint8_t>;
 using D16 = hn::ScalableTag<std::int16_t>;
@@ -67,9 +45,6 @@ HWY_INLINE V32 DotBytes(V32 sum, V8 codes, V32 weights) {
     // As the compilers' function has it, but GCC 12 then copies each sum twice per product.
     __asm__("vpdpbusd %2, %1, %0" : "+v"(sum.raw) : "v"(codes.raw), "v"(weights.raw));
     return sum;
-#elif HWY_TARGET == HWY_AVX3
-    const __m512i products = _mm512_maddubs_epi16(codes.raw, weights.raw);
-    return V32{_mm512_add_epi32(sum.raw, _mm512_madd_epi16(products, _mm512_set1_epi16(1)))};
 #elif HWY_TARGET == HWY_AVX2
     const __m256i products = _mm256_maddubs_epi16(codes.raw, weights.raw);
     return V32{_mm256_add_epi32(sum.raw, _mm256_madd_epi16(products, _mm256_set1_epi16(1)))};
@@ -84,8 +59,6 @@ HWY_INLINE V32 DotPairs(V32 sum, V16 samples, V32 weights) {
 #if HWY_TARGET == HWY_AVX3_DL
     __asm__("vpdpwssd %2, %1, %0" : "+v"(sum.raw) : "v"(samples.raw), "v"(weights.raw));
     return sum;
-#elif HWY_TARGET == HWY_AVX3
-    return V32{_mm512_add_epi32(sum.raw, _mm512_madd_epi16(samples.raw, weights.raw))};
 #elif HWY_TARGET == HWY_AVX2
     return V32{_mm256_add_epi32(sum.raw, _mm256_madd_epi16(samples.raw, weights.raw))};
 #else
@@ -95,7 +68,7 @@ HWY_INLINE V32 DotPairs(V32 sum, V16 samples, V32 weights) {
 
 /// The sums of adjacent bytes.
 HWY_INLINE V16 PairSums(V8 codes) {
-#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX3_DL
     return V16{_mm512_maddubs_epi16(codes.raw, _mm512_set1_epi8(1))};
 #elif HWY_TARGET == HWY_AVX2
     return V16{_mm256_maddubs_epi16(codes.raw, _mm256_set1_epi8(1))};
@@ -106,7 +79,7 @@ HWY_INLINE V16 PairSums(V8 codes) {
 
 /// Per block of 128 bits: the lanes of a, then those of b.
 HWY_INLINE V16 Pack(V32 a, V32 b) {
-#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX3_DL
     return V16{_mm512_packs_epi32(a.raw, b.raw)};
 #elif HWY_TARGET == HWY_AVX2
     return V16{_mm256_packs_epi32(a.raw, b.raw)};
@@ -115,7 +88,7 @@ HWY_INLINE V16 Pack(V32 a, V32 b) {
 #endif
 }
 HWY_INLINE V8 PackCodes(V16 a, V16 b) {
-#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX3_DL
     return V8{_mm512_packus_epi16(a.raw, b.raw)};
 #elif HWY_TARGET == HWY_AVX2
     return V8{_mm256_packus_epi16(a.raw, b.raw)};
@@ -211,7 +184,7 @@ void InterleaveBytes(const std::uint8_t* const* rows, std::size_t bytes, std::ui
 /// Stores block b of 128 bits at to + b * step.
 HWY_INLINE void ScatterBlocks(V16 v, std::int16_t* to, std::size_t step) {
     const hn::Full128<std::int16_t> block;
-#if HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX3_DL
     _mm_store_si128(reinterpret_cast<__m128i*>(to), _mm512_castsi512_si128(v.raw));
     _mm_store_si128(reinterpret_cast<__m128i*>(to + step), _mm512_extracti32x4_epi32(v.raw, 1));
     _mm_store_si128(reinterpret_cast<__m128i*>(to + 2 * step), _mm512_extracti32x4_epi32(v.raw, 2));
@@ -280,7 +253,7 @@ void CombineRow(const ByteColumnTaps& taps, const std::uint8_t* const* groups, s
     const std::int32_t *const high = taps.high.data(), *const low = taps.low.data();
     const std::size_t count = taps.high.size();
     std::size_t k = begin;
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL  // has registers for two columns, which share the weights
+#if HWY_TARGET == HWY_AVX3_DL  // has registers for two columns, which share the weights
     for (; k + 2 * kBytes <= end; k += 2 * kBytes) {
         for (const std::uint8_t* const row : ahead) Prefetch(row + k), Prefetch(row + k + kBytes);
         ColumnSums<kPixel, kShift> sums, next;
@@ -527,7 +500,11 @@ void HalveBytes(const std::uint8_t* const* rows, std::size_t pixels, Pixel pixel
     else Halve<Pixel::one>(rows, pixels, out);
 }
 
-#endif  // HWY_TARGET == HWY_SCALAR
+constexpr ByteLoops loops{HalveBytes, SpreadPixels, NarrowPixels, InterleaveBytes, CombineByteRows, CombineBytePairs};
+
+const ByteLoops* Loops() { return &loops; }
+
+#endif  // BANDLIMIT_NO_VECTORS || !HWY_ARCH_X86
 
 }  // namespace HWY_NAMESPACE
 }  // namespace bandlimit
@@ -535,35 +512,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace bandlimit {
-HWY_EXPORT(HasByteVectors);
-HWY_EXPORT(HalveBytes);
-HWY_EXPORT(SpreadPixels);
-HWY_EXPORT(NarrowPixels);
-HWY_EXPORT(InterleaveBytes);
-HWY_EXPORT(CombineByteRows);
-HWY_EXPORT(CombineBytePairs);
-bool has_byte_vectors() { return HWY_DYNAMIC_DISPATCH(HasByteVectors)(); }
-void halve_bytes(const std::uint8_t* const* rows, std::size_t pixels, Pixel pixel, std::uint8_t* out) {
-    HWY_DYNAMIC_DISPATCH(HalveBytes)(rows, pixels, pixel, out);
-}
-void spread_pixels(const std::uint8_t* narrow, int channels, std::size_t pixels, std::uint8_t* wide) {
-    HWY_DYNAMIC_DISPATCH(SpreadPixels)(narrow, channels, pixels, wide);
-}
-void narrow_pixels(const std::uint8_t* wide, int channels, std::size_t pixels, std::uint8_t* narrow) {
-    HWY_DYNAMIC_DISPATCH(NarrowPixels)(wide, channels, pixels, narrow);
-}
-void interleave_bytes(const std::uint8_t* const* rows, std::size_t bytes, std::uint8_t* out) {
-    HWY_DYNAMIC_DISPATCH(InterleaveBytes)(rows, bytes, out);
-}
-void combine_byte_rows(const ByteColumnTaps& taps, int bits, const std::uint8_t* const* groups, std::size_t begin,
-                       std::size_t end, std::span<const std::uint8_t* const> ahead, Pixel pixel, std::int16_t* out) {
-    HWY_DYNAMIC_DISPATCH(CombineByteRows)(taps, bits, groups, begin, end, ahead, pixel, out);
-}
-void combine_byte_pairs(const BytePairs& pairs, int begin, int end, const std::int16_t* tile, Pixel pixel,
-                        std::uint8_t* const* rows) {
-    HWY_DYNAMIC_DISPATCH(CombineBytePairs)(pairs, begin, end, tile, pixel, rows);
-}
+BANDLIMIT_EXPORT(Loops);
+const ByteLoops* byte_loops() { return BANDLIMIT_DISPATCH(Loops)(); }
 }  // namespace bandlimit
-#endif
-
 #endif

@@ -34,8 +34,9 @@ bool is_narrow(const View<T>& v, int count, Pixel pixel) {
 /// Rows of source samples, in place or copied to where they lie side by side.
 class SourceReader {
 public:
-    SourceReader(View<const std::uint8_t> src, int c, int count, Pixel pixel)
-        : src_(src),
+    SourceReader(const ByteLoops& loops, View<const std::uint8_t> src, int c, int count, Pixel pixel)
+        : loops_(loops),
+          src_(src),
           c_(c),
           count_(count),
           lanes_(static_cast<std::size_t>(pixel)),
@@ -49,7 +50,7 @@ public:
         if (in_place_) return &src_(0, y, c_);
         std::uint8_t* const copy = copies_.data() + static_cast<std::size_t>(k) * bytes();
         if (is_narrow(src_, count_, Pixel{static_cast<int>(lanes_)})) {
-            spread_pixels(&src_(0, y, c_), count_, static_cast<std::size_t>(src_.width), copy);
+            loops_.spread_pixels(&src_(0, y, c_), count_, static_cast<std::size_t>(src_.width), copy);
             return copy;
         }
         for (int c = 0; c < count_; ++c) {
@@ -64,6 +65,7 @@ public:
     const std::uint8_t* row_in_place(int y) const { return in_place_ ? &src_(0, y, c_) : nullptr; }
 
 private:
+    const ByteLoops& loops_;
     View<const std::uint8_t> src_;
     int c_, count_;
     std::size_t lanes_;
@@ -74,9 +76,10 @@ private:
 /// Computes the columns of a strip from the channels [c, c + count) of the views, as samples of `pixel`.
 class ByteRun {
 public:
-    ByteRun(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
-            int first_target, int c, int count, Pixel pixel, const ByteStrip& strip)
-        : plan_(plan),
+    ByteRun(const ByteLoops& loops, const BytePlan& plan, View<const std::uint8_t> src, int first_source,
+            View<std::uint8_t> dst, int first_target, int c, int count, Pixel pixel, const ByteStrip& strip)
+        : loops_(loops),
+          plan_(plan),
           strip_(strip),
           x_(*plan.banks.x.bank),
           y_(*plan.banks.y.bank),
@@ -88,8 +91,8 @@ public:
           pixel_(pixel),
           lanes_(static_cast<std::size_t>(pixel)),
           block_(tile_rows(pixel)),
-          reader_(cropped(src, strip.stored.begin, 0, strip.stored.end - strip.stored.begin, src.height), c, count,
-                  pixel),
+          reader_(loops, cropped(src, strip.stored.begin, 0, strip.stored.end - strip.stored.begin, src.height), c,
+                  count, pixel),
           padded_(whole_columns(reader_.bytes())),
           left_(std::max(0, strip.stored.begin / 2 - (strip.read.begin >> 1))) {
         const std::size_t pairs =
@@ -137,7 +140,7 @@ private:
     void interleave(int g, int slot) {
         const std::uint8_t* rows[4];
         for (int k = 0; k < 4; ++k) rows[k] = reader_.row(stored_row(4 * g + plan_.origin + k), k);
-        interleave_bytes(rows, reader_.bytes(), group(slot));
+        loops_.interleave_bytes(rows, reader_.bytes(), group(slot));
     }
 
     void filter_y(int first, int last) {
@@ -160,8 +163,8 @@ private:
                 lines_.clear();
                 for (int g = 0; g < static_cast<int>(taps.high.size()); ++g)
                     lines_.push_back(group(window_.slot_of(taps.first_group + g)));
-                combine_byte_rows(taps, bank.bits_of(first + r), lines_.data(), k, std::min(k + strip, padded_),
-                                  ahead_of(first + r, last), pixel_, row(r));
+                loops_.combine_rows(taps, bank.bits_of(first + r), lines_.data(), k, std::min(k + strip, padded_),
+                                    ahead_of(first + r, last), pixel_, row(r));
             }
     }
 
@@ -208,16 +211,16 @@ private:
             rows[r] = out_.empty() ? &dst_(strip_.first, i - first_target_, c_) : out_.data() + r * length;
         }
         const std::ptrdiff_t first_pair = strip_.stored.begin / 2;
-        combine_byte_pairs(plan_.pairs, strip_.first, strip_.last,
-                           tile() - first_pair * static_cast<std::ptrdiff_t>(tile_pair), pixel_, rows.data());
+        loops_.combine_pairs(plan_.pairs, strip_.first, strip_.last,
+                             tile() - first_pair * static_cast<std::ptrdiff_t>(tile_pair), pixel_, rows.data());
         if (out_.empty()) return;
         for (int i = first; i < last; ++i) scatter(rows[static_cast<std::size_t>(i - first)], i - first_target_);
     }
 
     void scatter(const std::uint8_t* samples, int y) const {
         if (is_narrow(dst_, count_, pixel_))
-            return narrow_pixels(samples, count_, static_cast<std::size_t>(strip_.last - strip_.first),
-                                 &dst_(strip_.first, y, c_));
+            return loops_.narrow_pixels(samples, count_, static_cast<std::size_t>(strip_.last - strip_.first),
+                                        &dst_(strip_.first, y, c_));
         for (int c = 0; c < count_; ++c) {
             std::uint8_t* to = &dst_(strip_.first, y, c_ + c);
             const std::uint8_t* from = samples + c;
@@ -225,6 +228,7 @@ private:
         }
     }
 
+    const ByteLoops& loops_;
     const BytePlan& plan_;
     const ByteStrip& strip_;
     const Bank &x_, &y_;
@@ -285,11 +289,11 @@ std::vector<ByteStrip> make_strips(const ByteBanks& banks, Pixel pixel) {
 }
 
 /// The same for means of 2 x 2 pixels, which need no rows in between.
-void halve_rows(View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst, int first_target, int c,
-                Pixel pixel, int begin, int end) {
+void halve_rows(const ByteLoops& loops, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
+                int first_target, int c, Pixel pixel, int begin, int end) {
     for (int i = begin; i < end; ++i) {
         const std::uint8_t* const rows[] = {&src(0, 2 * i - first_source, c), &src(0, 2 * i + 1 - first_source, c)};
-        halve_bytes(rows, static_cast<std::size_t>(dst.width), pixel, &dst(0, i - first_target, c));
+        loops.halve_bytes(rows, static_cast<std::size_t>(dst.width), pixel, &dst(0, i - first_target, c));
     }
 }
 
@@ -307,6 +311,10 @@ BytePlan make_byte_plan(const ByteBanks& banks) {
 
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
                   int first_target, int begin, int end) {
+    const ByteLoops* const loops = byte_loops();
+    if (!loops)
+        return resize_bytes_scalar(plan.banks, src, first_source,
+                                   cropped(dst, 0, begin - first_target, dst.width, end - begin), begin);
     // Channels side by side run together, four by four with some lanes idle; a single one, or a plane, by itself.
     const bool together = src.channels > 1 && (src.dc == 1 || dst.dc == 1);
     const int step = together ? 4 : 1;
@@ -314,11 +322,11 @@ void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_
         const int count = std::min(step, src.channels - c);
         const Pixel pixel = count == 1 ? Pixel::one : Pixel::four;
         if (plan.is_half_box && is_in_place(src, count, pixel) && is_in_place(dst, count, pixel)) {
-            halve_rows(src, first_source, dst, first_target, c, pixel, begin, end);
+            halve_rows(*loops, src, first_source, dst, first_target, c, pixel, begin, end);
             continue;
         }
         for (const ByteStrip& strip : pixel == Pixel::one ? plan.strips_of_one : plan.strips_of_four)
-            ByteRun(plan, src, first_source, dst, first_target, c, count, pixel, strip).rows(begin, end);
+            ByteRun(*loops, plan, src, first_source, dst, first_target, c, count, pixel, strip).rows(begin, end);
     }
 }
 

@@ -53,7 +53,7 @@ std::string difference(View<const std::uint8_t> a, View<const std::uint8_t> b) {
     return {};
 }
 
-TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
+TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryTarget) {
     Random random(1);
     for (int run = 0; run < 150; ++run) {
         int width = random.integer(1, 300), height = random.integer(1, 90);
@@ -75,17 +75,16 @@ TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryInstructionSet) {
         const Image<std::uint8_t> src = noise(random, width, height, channels, layout());
         Image<std::uint8_t> expected(new_width, new_height, channels), found(new_width, new_height, channels, layout());
         const View<const std::uint8_t> from = turned(src.view(), run);
-        resize_bytes_scalar(banks, from, expected.view());
+        resize_bytes_scalar(banks, from, 0, expected.view(), 0);
         const BytePlan plan = make_byte_plan(banks);
-        for_each_instruction_set([&](const std::string& target, bool) {
-            if (!has_byte_vectors()) return;
+        for_each_target([&](Target) {
             const int cut = random.integer(0, new_height);
             const View<std::uint8_t> to = turned(found.view(), run / 4);
             if (cut > 0) resize_bytes(plan, from, 0, to, 0, 0, cut);
             if (cut < new_height) resize_bytes(plan, from, 0, to, 0, cut, new_height);
             ASSERT_EQ(difference(to, expected.view()), "")
-                << target << ' ' << kernel.name << ' ' << name_of(edge) << ' ' << width << 'x' << height << 'x'
-                << channels << " to " << new_width << 'x' << new_height;
+                << kernel.name << ' ' << name_of(edge) << ' ' << width << 'x' << height << 'x' << channels << " to "
+                << new_width << 'x' << new_height;
         });
     }
 }
@@ -102,8 +101,7 @@ TEST(ResizeBytes, WideImagesAreThoseOfTheirDefinition) {
             EXPECT_EQ(plan.strips_of_four.size() > 2, edge != Edge::wrap);
             const Image<std::uint8_t> src = noise(random, width, height, channels, Layout::interleaved);
             Image<std::uint8_t> expected(new_width, 9, channels), found(new_width, 9, channels, Layout::interleaved);
-            resize_bytes_scalar(banks, src.view(), expected.view());
-            if (!has_byte_vectors()) return;
+            resize_bytes_scalar(banks, src.view(), 0, expected.view(), 0);
             resize_bytes(plan, src.view(), 0, found.view(), 0, 0, 9);
             ASSERT_EQ(difference(found.view(), expected.view()), "") << name_of(edge) << ' ' << channels;
         }
@@ -117,7 +115,7 @@ TEST(ResizeBytes, KeepsConstantsExactly) {
             for (int code = 0; code < 256; ++code) {
                 Image<std::uint8_t> src(37, 37), dst(size, size);
                 std::fill_n(src.view().data, 37 * 37, static_cast<std::uint8_t>(code));
-                resize_bytes_scalar(banks, src.view(), dst.view());
+                resize_bytes_scalar(banks, src.view(), 0, dst.view(), 0);
                 for (int i = 0; i < size * size; ++i) ASSERT_EQ(dst.view().data[i], code) << kernel.name;
             }
         }

@@ -23,7 +23,7 @@ using Lines = float* const*;
 void combine_scalar(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out,
                     std::size_t length);
 
-/// The same by vectors of the widest instruction set that this machine has, chosen at run time.
+/// The same on current_target().
 void combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length);
 
 /// A bound for the rounding error of a sum of `count` products in float, where sum_abs = sum |w x|; it holds with and

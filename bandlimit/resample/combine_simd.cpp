@@ -6,25 +6,26 @@
 #include <type_traits>
 #include <utility>
 
-#ifdef BANDLIMIT_SCALAR
-
-namespace bandlimit {
-void combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
-    combine_scalar(bank, begin, end, antiring, lines, out, length);
-}
-}  // namespace bandlimit
-
-#else
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bandlimit/resample/combine_simd.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
+#include "bandlimit/core/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
+
+#if BANDLIMIT_NO_VECTORS
+
+void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
+    combine_scalar(bank, begin, end, antiring, lines, out, length);
+}
+
+#else
+
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Without loops all of four sums is one function, which compilers with sanitizers take minutes for: there it is many.
@@ -200,15 +201,22 @@ private:
     Vectors<kCount, D> s0_, s1_, s2_, s3_;
 };
 
-/// Calls at(tag, vectors side by side, sample) over samples [k, end) of lines.
+/// Calls at(tag, vectors side by side, sample) over the samples [k, end) of lines that fill vectors; returns where they
+/// end.
 template <int kCount, class At>
-HWY_INLINE void ForEachVector(std::size_t k, std::size_t end, At at) {
+HWY_INLINE std::size_t ForEachWholeVector(std::size_t k, std::size_t end, At at) {
     const hn::ScalableTag<float> d;
-    const hn::CappedTag<float, 1> one;  // the tail, with the same arithmetic as the vectors
     const std::size_t n = hn::Lanes(d);
     for (; k + kCount * n <= end; k += kCount * n) at(d, std::integral_constant<int, kCount>(), k);
     for (; k + n <= end; k += n) at(d, std::integral_constant<int, 1>(), k);
-    for (; k < end; ++k) at(one, std::integral_constant<int, 1>(), k);
+    return k;
+}
+
+/// The same over all of them; the last ones one by one, with the same arithmetic.
+template <int kCount, class At>
+HWY_INLINE void ForEachVector(std::size_t k, std::size_t end, At at) {
+    const hn::CappedTag<float, 1> one;
+    for (k = ForEachWholeVector<kCount>(k, end, at); k < end; ++k) at(one, std::integral_constant<int, 1>(), k);
 }
 
 class Combination {
@@ -257,21 +265,22 @@ private:
     }
 
     // As many sums as fit the registers.
-    static constexpr int kCount = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 4 : 2;
+    static constexpr int kCount = HWY_TARGET == HWY_AVX3_DL ? 4 : 2;
 
     static void RunFour(const FourRows& four, std::size_t k, std::size_t last) {
         // Halving, by kernels of radius 1 to 3.
-        if (four.is_in_step(12, 2)) return RunInStep<12, 2>(four, k, last);
-        if (four.is_in_step(8, 2)) return RunInStep<8, 2>(four, k, last);
-        if (four.is_in_step(4, 2)) return RunInStep<4, 2>(four, k, last);
+        if (four.is_in_step(12, 2)) k = RunInStep<12, 2>(four, k, last);
+        else if (four.is_in_step(8, 2)) k = RunInStep<8, 2>(four, k, last);
+        else if (four.is_in_step(4, 2)) k = RunInStep<4, 2>(four, k, last);
         ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
             FourSums<vectors.value, decltype(d)>(four, at).Run();
         });
     }
 
+    /// Whole vectors only; returns where they end.
     template <int kTaps, int kStep>
-    static void RunInStep(const FourRows& four, std::size_t k, std::size_t last) {
-        ForEachVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
+    static std::size_t RunInStep(const FourRows& four, std::size_t k, std::size_t last) {
+        return ForEachWholeVector<kCount>(k, last, [&](auto d, auto vectors, std::size_t at) HWY_ATTR {
             FourSums<vectors.value, decltype(d)>(four, at).template RunInStep<kTaps, kStep>();
         });
     }
@@ -290,17 +299,17 @@ void Combine(const Bank& bank, int begin, int end, float antiring, ConstLines li
     for (std::size_t k = 0; k < length; k += strip) combination.Run(k, std::min(length, k + strip));
 }
 
+#endif  // BANDLIMIT_NO_VECTORS
+
 }  // namespace HWY_NAMESPACE
 }  // namespace bandlimit
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace bandlimit {
-HWY_EXPORT(Combine);
+BANDLIMIT_EXPORT(Combine);
 void combine(const Bank& bank, int begin, int end, float antiring, ConstLines lines, Lines out, std::size_t length) {
-    HWY_DYNAMIC_DISPATCH(Combine)(bank, begin, end, antiring, lines, out, length);
+    BANDLIMIT_DISPATCH(Combine)(bank, begin, end, antiring, lines, out, length);
 }
 }  // namespace bandlimit
 #endif
-
-#endif  // BANDLIMIT_SCALAR

@@ -1,7 +1,6 @@
 // The one checker for every operation on images. A helper of tests, tested itself with broken operators.
 #pragma once
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
@@ -18,6 +17,7 @@
 #include "bandlimit/core/image.h"
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/core/sanitized_test.h"
+#include "bandlimit/core/targets_test.h"
 #include "bandlimit/core/view.h"
 #include "bandlimit/math/random.h"
 
@@ -43,27 +43,6 @@ struct Operator {
     /// The size of the output; the number of channels stays.
     std::function<Size(Size)> output_size = [](Size input) { return input; };
 };
-
-namespace checker {
-
-inline bool has_fused_multiply_add(std::int64_t target) {
-    // What these emulate or narrow their vectors for multiplies and adds apart.
-    return (target & (HWY_SCALAR | HWY_EMU128 | HWY_WASM | HWY_WASM_EMU256)) == 0 &&
-           (!HWY_ARCH_X86 || target <= HWY_AVX2);
-}
-
-}  // namespace checker
-
-/// Calls body(name, has_fused_multiply_add) with each instruction set that this machine and build have, one at a time.
-inline void for_each_instruction_set(const std::function<void(const std::string&, bool)>& body) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        body(hwy::TargetName(target), checker::has_fused_multiply_add(target));
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 namespace checker {
 
@@ -162,7 +141,7 @@ public:
         for (int c = 0; c < channels; ++c)
             for (int y = 0; y < size.height; ++y)
                 for (int x = 0; x < size.width; ++x) input_.view()(x, y, c) = static_cast<float>(random.uniform(-1, 2));
-        // Once for all instruction sets: this is most of the time of a check.
+        // Once for all targets: this is most of the time of a check.
         for (int c = 0; c < channels; ++c)
             for (int y = 0; y < output_size_.height; ++y)
                 for (int x = 0; x < output_size_.width; ++x) {
@@ -185,7 +164,7 @@ public:
         for (const Window& window : windows())
             for (const Memory& to : {memories[0], memories[1], memories[7]})
                 if (auto p = problem_of(memories[1], to, window, 2)) return p;
-        return problem_of_instruction_sets(whole);
+        return problem_of_targets(whole);
     }
 
 private:
@@ -251,11 +230,11 @@ private:
         return problem;
     }
 
-    std::optional<std::string> problem_of_instruction_sets(const Window& whole) {
+    std::optional<std::string> problem_of_targets(const Window& whole) {
         std::optional<std::string> problem;
-        for_each_instruction_set([&](const std::string& name, bool fused) {
+        for_each_target([&](Target target) {
             if (problem) return;
-            if (fused) {
+            if (has_fused_multiply_add(target)) {
                 for (const Memory& memory : {memories[0], memories[1], memories[7]})
                     if (!problem) problem = problem_of(memory, memory, whole, 1);
             } else {
@@ -264,7 +243,7 @@ private:
                 if (!problem) problem = distance_problem();
                 expected_ = fused_result.clone();
             }
-            if (problem) problem = name + ": " + *problem;
+            if (problem) problem = message(name_of(target), ": ", *problem);
         });
         return problem;
     }
@@ -292,9 +271,9 @@ private:
 /// Checks, for widths 1 to 33 (under the thread sanitizer for some of them) and 1 to 4 channels, that an operator
 /// - writes every sample of its output and nothing else, and leaves its input alone;
 /// - gives the same bits when repeated, for 1, 2, 3 and 7 threads, for planar, interleaved, transposed, flipped and
-///   padded samples on either side, for a window against the crop of the whole, and on every instruction set of this
-///   machine that has fused multiply-add;
-/// - is as near to the reference as the bound says, on every instruction set.
+///   padded samples on either side, for a window against the crop of the whole, and on every supported target that has
+///   fused multiply-add, the scalar definition among them;
+/// - is as near to the reference as the bound says, on every target.
 /// The failure tells the first thing that is wrong, and where.
 [[nodiscard]] inline testing::AssertionResult check_operator(const Operator& op) {
     for (int width = 1; width <= 33; ++width) {

@@ -81,7 +81,7 @@ Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOpt
         const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
         plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
         add_strips(*plan, 0, dst.x.count, plan->strips);
-        if (has_byte_vectors()) plan_bytes(*plan);
+        if (runs_bytes_in_integers) plan_bytes(*plan);
     }
     plan_ = std::move(plan);
 }

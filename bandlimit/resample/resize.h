@@ -63,7 +63,7 @@ struct ResizePlan;
 /// Rows are decoded to linear float, filtered along both axes, and encoded, a few at a time, by contiguous runs of
 /// output rows per thread. Which axis is filtered first depends on the scale factors alone: parts of an image have the
 /// bits of the whole. Radial kernels filter both at once. Codes of 8 bits that need no decoding (linear, no alpha to
-/// multiply by, no antiring) run in integers where the machine has the instructions (x86).
+/// multiply by, no antiring) run in integers on x86, with the same result on all targets.
 ///
 /// memory   per thread about 2 MiB, more where one output reads more: images are worked on in strips of columns
 /// error    as combine(), once per axis; u8 and u16 are the nearest codes of the float result. In integers: at most one

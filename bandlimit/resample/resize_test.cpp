@@ -113,16 +113,16 @@ TEST(Resizer, PassesTheOperatorChecker) {
                 visit(resolve(i, size.width, r.edge), resolve(j, size.height, r.edge),
                       r.kernel.value(std::hypot((i - tx) / sx, (j - ty) / sy)));
     };
-    /// Made once per shape and instruction set: the table of the kernel takes longer than all runs together.
-    std::map<std::array<std::int64_t, 8>, Resizer> resizers;
+    /// Made once per shape: the table of the kernel takes longer than all runs together.
+    std::map<std::array<int, 7>, Resizer> resizers;
     Operator op;
     op.output_size = [r](Size size) { return r.output(size); };
     op.run = [&](View<const float> src, View<float> dst, Window w, Parallel parallel) {
         const Grid part = part_of(r.dst(size_of(src)), w);
         const ResizeOptions options{.reconstruction = r.kernel, .edge = r.edge};
         resizers
-            .try_emplace({src.width, src.height, src.channels, w.x, w.y, w.width, w.height, hwy::SupportedTargets()},
-                         r.src(size_of(src)), part, src.channels, options)
+            .try_emplace({src.width, src.height, src.channels, w.x, w.y, w.width, w.height}, r.src(size_of(src)), part,
+                         src.channels, options)
             .first->second.run({src, 0, {}}, {dst, 0, {}, {}}, parallel);
     };
     op.reference = [=](View<const float> src, int x, int y, int c) {
@@ -502,11 +502,11 @@ TEST(Resizer, OnesStayOnesOnEveryInstructionSet) {
         return image;
     };
     const Image<float> small = ones(31, 37, 3), wide = ones(4000, 5, 1), high = ones(3, 4000, 4);
-    for_each_instruction_set([&](const std::string& target, bool) {
+    for_each_target([&](Target target) {
         for (const Kernel& kernel : all_kernels())
             for (const Edge edge : {Edge::clamp, Edge::renormalize}) {
                 const ResizeOptions options{.reconstruction = kernel, .edge = edge};
-                const std::string what = message(target, ' ', kernel.name, ' ', name_of(edge));
+                const std::string what = message(name_of(target), ' ', kernel.name, ' ', name_of(edge));
                 for (const auto& [width, height] : {std::pair{12, 80}, {50, 60}, {31, 37}})
                     EXPECT_TRUE(is_one(resample(small.view(), width, height, options))) << what << ' ' << width;
                 // Discs of a million samples take too long; and both edges take the same way.

@@ -3,39 +3,34 @@
 
 #include <algorithm>
 
-#ifdef BANDLIMIT_SCALAR
-
-namespace bandlimit {
-void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
-    for (int x = 0; x < width; ++x)
-        for (int y = 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
-}
-void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
-                     std::ptrdiff_t stride) {
-    for (int x = 0; x < width; ++x)
-        for (int y = 0; y < count; ++y) std::copy_n(rows + y * pitch + 4 * x, 4, lanes + x * stride + 4 * y);
-}
-}  // namespace bandlimit
-
-#else
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bandlimit/resample/transpose.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h, which includes this file once per instruction set.
 #include <hwy/highway.h>
 
+#include "bandlimit/core/dispatch.h"
 #include "bandlimit/core/transpose4-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
+
+#if BANDLIMIT_NO_VECTORS
+
+void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    for (int x = 0; x < width; ++x)
+        for (int y = 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
+}
+void PixelsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
+    for (int x = 0; x < width; ++x)
+        for (int y = 0; y < count; ++y) std::copy_n(rows + y * pitch + 4 * x, 4, lanes + x * stride + 4 * y);
+}
+
+#else
+
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR  // one lane per vector: no blocks
-constexpr int kBlock = 0;
-HWY_INLINE void TransposeBlock(const float*, std::ptrdiff_t, float*, std::ptrdiff_t) {}
-#else
 constexpr int kBlock = 4;
 HWY_INLINE void TransposeBlock(const float* rows, std::ptrdiff_t pitch, float* lanes, std::ptrdiff_t stride) {
     const hn::Full128<float> d;
@@ -44,9 +39,8 @@ HWY_INLINE void TransposeBlock(const float* rows, std::ptrdiff_t pitch, float* l
     Transpose4(v);
     for (int i = 0; i < 4; ++i) hn::StoreU(v[i], d, lanes + i * stride);
 }
-#endif
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3_DL
 /// Block b of row k of a tall block of 16 x 4 samples comes from row 4 * b + k.
 constexpr int kTall = 16;
 HWY_INLINE auto LoadBlocks(const float* from, std::ptrdiff_t step) {
@@ -70,7 +64,7 @@ HWY_INLINE void TransposeTallBlock(const float* rows, std::ptrdiff_t pitch, floa
 #endif
 
 void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
-    const int whole_width = kBlock ? width & ~3 : 0, whole_count = count & ~3;
+    const int whole_width = width & ~3, whole_count = count & ~3;
     for (int x = 0; x < whole_width; x += kBlock) {
         int y = 0;
         for (; y + kTall <= whole_count; y += kTall)
@@ -82,7 +76,7 @@ void RowsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width, 
         for (int y = x < whole_width ? whole_count : 0; y < count; ++y) lanes[x * stride + y] = rows[y * pitch + x];
 }
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3_DL
 /// Rows and columns of 4 x 4 pixels.
 constexpr int kPixels = 4;
 HWY_INLINE void TransposePixels(const float* from, std::ptrdiff_t from_step, float* to, std::ptrdiff_t to_step) {
@@ -118,22 +112,22 @@ void PixelsToLanes(const float* rows, std::ptrdiff_t pitch, int count, int width
     TransposeAllPixels(rows, pitch, count, width, lanes, stride);
 }
 
+#endif  // BANDLIMIT_NO_VECTORS
+
 }  // namespace HWY_NAMESPACE
 }  // namespace bandlimit
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace bandlimit {
-HWY_EXPORT(RowsToLanes);
-HWY_EXPORT(PixelsToLanes);
+BANDLIMIT_EXPORT(RowsToLanes);
+BANDLIMIT_EXPORT(PixelsToLanes);
 void pixels_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes,
                      std::ptrdiff_t stride) {
-    HWY_DYNAMIC_DISPATCH(PixelsToLanes)(rows, pitch, count, width, lanes, stride);
+    BANDLIMIT_DISPATCH(PixelsToLanes)(rows, pitch, count, width, lanes, stride);
 }
 void rows_to_lanes(const float* rows, std::ptrdiff_t pitch, int count, int width, float* lanes, std::ptrdiff_t stride) {
-    HWY_DYNAMIC_DISPATCH(RowsToLanes)(rows, pitch, count, width, lanes, stride);
+    BANDLIMIT_DISPATCH(RowsToLanes)(rows, pitch, count, width, lanes, stride);
 }
 }  // namespace bandlimit
 #endif
-
-#endif  // BANDLIMIT_SCALAR
