@@ -3,9 +3,11 @@
 #include <array>
 #include <filesystem>
 #include <initializer_list>
+#include <utility>
 
 #include "bandlimit/core/error.h"
-#include "bandlimit/io/oiio.h"
+#include "bandlimit/io/codecs.h"
+#include "bandlimit/io/probe.h"
 
 namespace bandlimit {
 namespace {
@@ -55,9 +57,7 @@ const std::array<Format, 12>& formats() {
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     if (!extension.empty()) extension.erase(0, 1);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return extension;
+    return lower_case(std::move(extension));
 }
 
 std::string known_extensions() {

@@ -159,17 +159,21 @@ std::string exr(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t 
     return text + '\0' + std::string(200, '\0');
 }
 
-std::string png(std::uint32_t w, std::uint32_t h, char interlace) {
-    // Without the right checksum libpng would look no further: CRC-32 of the header, bit by bit.
-    const std::string head =
-        "IHDR" + number(w, 4, true) + number(h, 4, true) + "\x08\x06" + std::string(2, '\0') + interlace;
+/// Without the right checksum libpng would look no further: CRC-32 bit by bit.
+std::string png_chunk(const std::string& name_and_data) {
     std::uint32_t crc = 0xffffffff;
-    for (const char c : head) {
+    for (const char c : name_and_data) {
         crc ^= static_cast<unsigned char>(c);
         for (int k = 0; k < 8; ++k) crc = crc & 1 ? 0xedb88320 ^ (crc >> 1) : crc >> 1;
     }
-    return "\x89PNG\r\n\x1a\n" + number(13, 4, true) + head + number(~crc, 4, true) + number(1000, 4, true) + "IDAT" +
-           std::string(1000, '\0');
+    return number(name_and_data.size() - 4, 4, true) + name_and_data + number(~crc, 4, true);
+}
+
+/// `chunks` lie between the header and the pixels.
+std::string png(std::uint32_t w, std::uint32_t h, char interlace, const std::string& chunks = "") {
+    const std::string head =
+        "IHDR" + number(w, 4, true) + number(h, 4, true) + "\x08\x06" + std::string(2, '\0') + interlace;
+    return "\x89PNG\r\n\x1a\n" + png_chunk(head) + chunks + number(1000, 4, true) + "IDAT" + std::string(1000, '\0');
 }
 
 std::vector<Promise> promises() {
@@ -260,6 +264,20 @@ TEST(Hostile, AnAttributeLongerThanTheFileIsRefusedBeforeItIsRead) {
     write_bytes(path, text.insert(8, long_attribute));
     EXPECT_TRUE(fails_for(
         path, [&] { ImageReader reader(path); }, "an attribute of 1769165569 bytes"));
+}
+
+TEST(Hostile, AChunkOfPngLongerThanTheFileIsRefusedBeforeItIsRead) {
+    const Folder folder;
+    const std::string path = folder / "long.png";
+    rusage before{}, after{};
+    ::getrusage(RUSAGE_SELF, &before);
+    for (const std::string name : {"tEXt", "zTXt", "iTXt", "iCCP", "eXIf", "PLTE", "tRNS", "vpAg"}) {
+        write_bytes(path, png(20, 20, 0, number(0x7fffffff, 4, true) + name + "Comment" + std::string(100, '\0')));
+        EXPECT_TRUE(fails_for(
+            path, [&] { ImageReader reader(path); }, "a chunk of 2147483647 bytes"));
+    }
+    ::getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200 * 1024) << "kB";
 }
 
 TEST(Hostile, AnInterlacedPictureIsRefusedForTheMemoryItNeeds) {

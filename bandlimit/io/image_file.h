@@ -46,8 +46,9 @@ struct ImageInfo {
 ///          half a code of the product.
 /// cost     no more than the rows asked for and one row of tiles, strips or compressed blocks, except for files that
 ///          are stored sideways, upside down, interlaced or progressively, and for WebP and PNM
-/// threads  how many may decode: 0 all cores, 1 the caller's alone. The setting belongs to the process: OpenImageIO
-///          keeps one pool
+/// threads  how many may decode: 0 all cores, 1 the caller's alone. The pool belongs to the process: files that are
+/// open
+///          at the same time share the one of the first
 /// throws   std::runtime_error "PATH: what is wrong; what to do" from every function, for files that are missing, no
 ///          images, truncated, or too large for this machine's memory; Error for rows or views that do not fit
 class ImageReader {

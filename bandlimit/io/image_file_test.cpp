@@ -4,6 +4,9 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "bandlimit/io/files_test.h"
 
 namespace bandlimit {
@@ -234,6 +237,52 @@ TEST(ImageFile, TilesComeBackForAnyBlocksOfRows) {
                     EXPECT_TRUE(equal(pixels(image), pixels(again)));
                 }
     EXPECT_EQ(folder.count(), 2) << "something else was left behind";
+}
+
+TEST(ImageFile, BytesDependNeitherOnThreadsNorOnTime) {
+    // Tiles that end beyond the picture, rows that make several strips.
+    const Folder folder;
+    for (const std::string extension : {"tif", "exr"})
+        for (const Depth depth : abilities_of("x." + extension).depths)
+            for (const int tile : {0, 64}) {
+                SCOPED_TRACE(message(extension, " ", name_of(depth), " / ", tile));
+                AnyImage image = noise(depth, 400, 300, 3);
+                ImageTarget target = target_of(depth, 400, 300, 3);
+                target.tile = tile;
+                std::string first;
+                for (const int threads : {1, 2, 12, 24, 12, 24, 1}) {
+                    const std::string path = folder / ("a." + extension);
+                    ImageWriter writer(path, target, threads);
+                    writer.write_rows(pixels(image));
+                    writer.finish();
+                    if (first.empty()) first = bytes_of(path);
+                    EXPECT_TRUE(bytes_of(path) == first) << threads << " threads";
+                }
+            }
+}
+
+TEST(ImageFile, ManyThreadsReadAndWriteAtOnceEachWithItsOwnCount) {
+    const Folder folder;
+    AnyImage image = noise(Depth::u8, 40, 30, 3);
+    ImageTarget target = target_of(Depth::u8, 40, 30, 3);
+    target.tile = 16;
+    std::atomic<int> wrong = 0;
+    const auto work = [&](int worker) {
+        const std::string path = folder / (std::to_string(worker) + ".tif");
+        for (int i = 0; i < 25; ++i) {
+            const int threads = 1 + (worker + i) % 12;
+            ImageWriter writer(path, target, threads);
+            writer.write_rows(pixels(image));
+            writer.finish();
+            ImageReader reader(path, 13 - threads);
+            AnyImage again = read_image(reader);
+            if (!equal(pixels(image), pixels(again))) ++wrong;
+        }
+    };
+    std::vector<std::thread> workers;
+    for (int worker = 0; worker < 24; ++worker) workers.emplace_back(work, worker);
+    for (std::thread& worker : workers) worker.join();
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(ImageFile, ManyTilesTakeSeveralCalls) {

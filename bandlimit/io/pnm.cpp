@@ -6,9 +6,10 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "bandlimit/core/error.h"
+#include "bandlimit/core/file_error.h"
 
 namespace bandlimit {
 namespace {
@@ -35,6 +36,26 @@ int read_number(std::istream& in) {
     return value;
 }
 
+/// Reads the rows of `view`, the first of which is row `y` of the picture; false if the file is too short.
+bool read_rows(const std::string& path, const PnmLayout& layout, int y, const View<std::uint16_t>& view) {
+    const std::size_t row_bytes =
+        static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.channels) * 2;
+    std::vector<unsigned char> bytes(row_bytes);
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(layout.start + static_cast<std::int64_t>(row_bytes) * y);
+    const unsigned white = static_cast<unsigned>(layout.largest_code);
+    for (int i = 0; i < view.height; ++i) {
+        if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(row_bytes))) return false;
+        const unsigned char* from = bytes.data();
+        for (int x = 0; x < view.width; ++x)
+            for (int c = 0; c < view.channels; ++c, from += 2) {
+                const unsigned code = std::min(white, from[0] * 256u + from[1]);
+                view(x, i, c) = static_cast<std::uint16_t>((code * 65535u + white / 2) / white);
+            }
+    }
+    return true;
+}
+
 }  // namespace
 
 std::optional<PnmLayout> find_pnm_of_16_bits(const std::string& path) {
@@ -53,23 +74,23 @@ std::optional<PnmLayout> find_pnm_of_16_bits(const std::string& path) {
     return layout;
 }
 
-bool read_pnm_rows(const std::string& path, const PnmLayout& layout, int y, const View<std::uint16_t>& view) {
-    const std::size_t row_bytes =
-        static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.channels) * 2;
-    std::vector<unsigned char> bytes(row_bytes);
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(layout.start + static_cast<std::int64_t>(row_bytes) * y);
-    const unsigned white = static_cast<unsigned>(layout.largest_code);
-    for (int i = 0; i < view.height; ++i) {
-        if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(row_bytes))) return false;
-        const unsigned char* from = bytes.data();
-        for (int x = 0; x < view.width; ++x)
-            for (int c = 0; c < view.channels; ++c, from += 2) {
-                const unsigned code = std::min(white, from[0] * 256u + from[1]);
-                view(x, i, c) = static_cast<std::uint16_t>((code * 65535u + white / 2) / white);
-            }
-    }
-    return true;
+Decoder decode_pnm(const std::string& path, const PnmLayout& layout) {
+    StoredPicture picture;
+    picture.info.format = "pnm";
+    picture.info.width = layout.width, picture.info.height = layout.height;
+    picture.info.depth = layout.depth;
+    picture.info.transfer = Transfer::srgb;
+    picture.info.color_hint = "Rec709";  // so netpbm; what programs write is sRGB
+    if (layout.channels == 1) picture.info.channel_names = {"Y"};
+    else picture.info.channel_names = {"R", "G", "B"};
+    return {.picture = picture,
+            .read =
+                [path, layout](int y, const AnyView& rows) {
+                    const auto& view = std::get<View<std::uint16_t>>(rows);
+                    if (!read_rows(path, layout, y, view))
+                        fail_file(path, "rows ", y, " to ", y + view.height - 1, " are missing; the file is cut short");
+                },
+            .count_parts = [] { return Parts{}; }};
 }
 
 PnmLayout write_pnm_header(AtomicFile& file, int width, int height, int channels, Depth depth) {

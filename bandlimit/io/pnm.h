@@ -7,6 +7,7 @@
 
 #include "bandlimit/color/depth.h"
 #include "bandlimit/io/atomic_file.h"
+#include "bandlimit/io/codecs.h"
 
 namespace bandlimit {
 
@@ -22,9 +23,8 @@ struct PnmLayout {
 /// The layout of `path`, if it is a binary PGM or PPM of 16 bits.
 std::optional<PnmLayout> find_pnm_of_16_bits(const std::string& path);
 
-/// Reads the rows of `view`, the first of which is row `y` of the picture; false if the file is too short.
-/// Codes are scaled so that white is 65535, and rounded to nearest.
-bool read_pnm_rows(const std::string& path, const PnmLayout& layout, int y, const View<std::uint16_t>& view);
+/// Reads such a file. Codes are scaled so that white is 65535, and rounded to nearest.
+Decoder decode_pnm(const std::string& path, const PnmLayout& layout);
 
 /// Writes the header, and tells where the rows belong. Failures are remembered by `file`.
 /// source   netpbm: the pages pgm(5), ppm(5); PFM as Debevec's HDR Shop writes it: rows from bottom to top

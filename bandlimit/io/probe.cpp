@@ -3,10 +3,10 @@
 #include <array>
 #include <cstdio>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "bandlimit/core/file_error.h"
-#include "bandlimit/io/oiio.h"
 #include "bandlimit/io/regular_file.h"
 
 namespace bandlimit {
@@ -39,6 +39,23 @@ std::uint64_t jpeg_memory(std::FILE* file) {
                    static_cast<std::uint64_t>(components) * coefficient_bytes;
         }
         if (std::fseek(file, length - 2, SEEK_CUR) != 0) return 0;
+    }
+}
+
+/// Refuses a PNG file with a chunk that is longer than the file: libpng makes room for it, and fills it with zeros,
+/// before it reads. Pixels it reads piece by piece: who lacks some of those learns that later, and gets the rows
+/// before.
+void check_png_chunks(std::FILE* file, std::uint64_t bytes, const std::string& path) {
+    constexpr std::uint64_t signature = 8, around = 12;  // length, name and checksum
+    for (std::uint64_t start = signature; start + around <= bytes;) {
+        std::array<unsigned char, 8> head{};
+        std::fseek(file, static_cast<long>(start), SEEK_SET);
+        if (std::fread(head.data(), 1, head.size(), file) != head.size()) return;
+        const std::uint64_t length = std::uint64_t{head[0]} << 24 | head[1] << 16 | head[2] << 8 | head[3];
+        const std::string_view name(reinterpret_cast<const char*>(head.data()) + 4, 4);
+        if (length > bytes - start && name != "IDAT")
+            fail_file(path, "claims a chunk of ", length, " bytes and has ", bytes, "; the file is damaged");
+        start += around + length;
     }
 }
 
@@ -112,6 +129,7 @@ Probe probe(const std::string& path) {
     constexpr std::size_t png_interlace = 28;  // signature, chunk head, sizes, depth, colour type, two methods
     found.is_interlaced = found.format == "png" && size > png_interlace && head[png_interlace] != 0;
     if (found.format == "jpeg") found.memory_to_open = jpeg_memory(file.get());
+    if (found.format == "png") check_png_chunks(file.get(), found.bytes, path);
     if (found.format == "openexr") check_exr_attributes(file.get(), found.bytes, path);
     if (found.format == "pnm") found.memory_to_open = found.bytes;
     return found;

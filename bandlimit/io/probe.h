@@ -1,6 +1,7 @@
 // What can be known of a file before a codec sees it. Not for callers.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace bandlimit {
@@ -13,6 +14,10 @@ struct Probe {
     std::uint64_t memory_to_open = 0;
     bool is_interlaced = false;  ///< a PNG whose rows come out together
 };
+
+/// The format of a file that begins with `head`, as OpenImageIO names it; "" if it is none that we read.
+/// `path` decides for TGA alone, which has no signature.
+std::string format_of(std::span<const unsigned char> head, const std::string& path);
 
 /// throws   std::runtime_error, with the path, for anything else
 Probe probe(const std::string& path);

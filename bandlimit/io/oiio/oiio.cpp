@@ -1,20 +1,45 @@
-#include "bandlimit/io/oiio.h"
+#include "bandlimit/io/oiio/oiio.h"
 
 #include <algorithm>
-#include <atomic>
+#include <mutex>
+#include <thread>
 
-#include "bandlimit/core/parallel.h"
+namespace bandlimit::oiio {
+namespace {
 
-namespace bandlimit {
+struct Pools {
+    std::mutex mutex;
+    int open_files = 0;
+    int threads = 0;  ///< 0 before the first file
+};
 
-void use_threads(int threads) {
-    static std::atomic<int> in_use{0};
-    const int count = Parallel{threads}.count();
-    if (in_use.exchange(count) == count) return;
-    OIIO::attribute("threads", count);
-    OIIO::attribute("exr_threads", count == 1 ? -1 : count);  // -1: no pool, the caller decodes
+Pools& pools() {
+    static Pools pools;
+    return pools;
+}
+
+void resize_pools(int threads) {
+    OIIO::attribute("threads", threads);
+    OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);  // -1: no pool, the caller decodes
     // We check sizes ourselves, against the memory of this machine and the length of the file.
     OIIO::attribute("limits:imagesize_MB", 0);
+}
+
+}  // namespace
+
+PoolShare::PoolShare(int threads) {
+    const int wanted = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const std::lock_guard lock(pools().mutex);
+    if (pools().open_files == 0 && pools().threads != wanted) {
+        resize_pools(wanted);
+        pools().threads = wanted;
+    }
+    ++pools().open_files;
+}
+
+PoolShare::~PoolShare() {
+    const std::lock_guard lock(pools().mutex);
+    --pools().open_files;
 }
 
 int tile_columns_at_once(const OIIO::ImageSpec& spec) {
@@ -39,4 +64,9 @@ std::string one_line(std::string_view text) {
     return line.empty() ? "unknown reason" : line;
 }
 
-}  // namespace bandlimit
+}  // namespace bandlimit::oiio
+
+extern "C" const bandlimit::Codecs* bandlimit_oiio_codecs() {
+    static constexpr bandlimit::Codecs codecs{bandlimit::oiio::decode, bandlimit::oiio::encode};
+    return &codecs;
+}
