@@ -102,7 +102,7 @@ std::vector<int> rows_of(const Options& o) {
     }
     for (const double r : parse_numbers("--rows", o.rows)) {
         if (!(r >= 0 && r < *o.to && r == std::floor(r)))
-            throw UsageError(fmt::format("--rows: {} is no row; pass whole numbers from 0 to {}", r, *o.to - 1));
+            throw UsageError(fmt::format("--rows: {} is not a row; pass whole numbers from 0 to {}", r, *o.to - 1));
         rows.push_back(static_cast<int>(r));
     }
     return rows;
@@ -132,7 +132,7 @@ std::vector<std::string_view> shaders_for(const std::string& name) {
 void check(const Options& o) {
     if (o.list) return;
     if (o.kernel.empty())
-        throw UsageError("analyze: there is no kernel; name one (analyze --list shows them) or a taps.json");
+        throw UsageError("analyze: a kernel is missing; name one (analyze --list shows them) or a taps.json");
     if (o.emit && o.json) throw UsageError("analyze: --emit and --json both print to stdout; leave one out");
     if (o.emit && !o.plot.empty())
         throw UsageError("analyze: --emit prints a shader and draws nothing; leave out --plot");
@@ -306,55 +306,55 @@ std::string cells(const std::vector<double>& numbers) {
     return text;
 }
 
-void print_phase(const PhaseReport& p) {
-    fmt::print("\nphase {:.6g}: first {}", p.phase, p.first);
-    if (p.first_y) fmt::print(", first row {}", *p.first_y);
-    fmt::print(", sum {:.6f}, variance {:.6f}, centroid {:.6f}\n", p.sum, p.variance, p.centroid);
+void print_phase(Console& console, const PhaseReport& p) {
+    console.print("\nphase {:.6g}: first {}", p.phase, p.first);
+    if (p.first_y) console.print(", first row {}", *p.first_y);
+    console.print(", sum {:.6f}, variance {:.6f}, centroid {:.6f}\n", p.sum, p.variance, p.centroid);
     constexpr std::size_t widest = 16;  // what fits a terminal; --json has all
     if (p.weights.size() > 1 && p.weights.front().size() > widest)
-        return fmt::print("  {} x {} weights\n", p.weights.front().size(), p.weights.size());
-    for (const std::vector<double>& row : p.weights) fmt::print("  {}\n", cells(row));
+        return console.print("  {} x {} weights\n", p.weights.front().size(), p.weights.size());
+    for (const std::vector<double>& row : p.weights) console.print("  {}\n", cells(row));
 }
 
-void print_gains(const Report& r) {
+void print_gains(Console& console, const Report& r) {
     std::vector<double> line;
     for (const ResponseAt& at : r.phases.front().responses) line.push_back(at.f);
-    fmt::print("\n{:<14}{}\n", "gain at f", cells(line));
+    console.print("\n{:<14}{}\n", "gain at f", cells(line));
     for (const PhaseReport& p : r.phases) {
         line.clear();
         for (const ResponseAt& at : p.responses) line.push_back(std::abs(at.h));
-        fmt::print("{:<14}{}\n", fmt::format("phase {:.4g}", p.phase), cells(line));
+        console.print("{:<14}{}\n", fmt::format("phase {:.4g}", p.phase), cells(line));
         line.clear();
         for (const ResponseAt& at : p.diagonal) line.push_back(std::abs(at.h));
-        if (!line.empty()) fmt::print("{:<14}{}\n", "at (f, f)", cells(line));
+        if (!line.empty()) console.print("{:<14}{}\n", "at (f, f)", cells(line));
     }
     if (r.profile.empty()) return;
     line.clear();
     for (const auto& [f, gain] : r.profile) line.push_back(gain);
-    fmt::print("{:<14}{}\n", "continuous", cells(line));
+    console.print("{:<14}{}\n", "continuous", cells(line));
 }
 
-void print(const Report& r) {
-    fmt::print("{}", r.name);
-    if (r.radius) fmt::print(": {}, radius {:.6g}", r.separable ? "separable" : "radial", *r.radius);
-    fmt::print("\n");
-    if (!r.values.empty()) fmt::print("\n{:>10}{:>12}\n", "x", "value");
-    for (const auto& [x, value] : r.values) fmt::print("{:>10.4f}{:>12.6f}\n", x, value);
-    for (const PhaseReport& p : r.phases) print_phase(p);
-    print_gains(r);
-    if (!r.rows.empty()) fmt::print("\n{:>8}{:>8}  weights\n", "output", "first");
+void print(Console& console, const Report& r) {
+    console.print("{}", r.name);
+    if (r.radius) console.print(": {}, radius {:.6g}", r.separable ? "separable" : "radial", *r.radius);
+    console.print("\n");
+    if (!r.values.empty()) console.print("\n{:>10}{:>12}\n", "x", "value");
+    for (const auto& [x, value] : r.values) console.print("{:>10.4f}{:>12.6f}\n", x, value);
+    for (const PhaseReport& p : r.phases) print_phase(console, p);
+    print_gains(console, r);
+    if (!r.rows.empty()) console.print("\n{:>8}{:>8}  weights\n", "output", "first");
     for (const RowReport& row : r.rows)
-        fmt::print("{:>8}{:>8}  {}\n", row.output, row.first, fmt::join(row.weights, " "));
+        console.print("{:>8}{:>8}  {}\n", row.output, row.first, fmt::join(row.weights, " "));
 }
 
-void print_list(bool json) {
+void print_list(Console& console, bool json) {
     if (json) {
         ordered_json list = ordered_json::array();
         for (const KernelInfo& k : kernel_list())
             list.push_back({{"name", k.name}, {"example", k.example}, {"summary", k.summary}});
-        return print_json({{"kernels", list}});
+        return console.print_json({{"kernels", list}});
     }
-    for (const KernelInfo& k : kernel_list()) fmt::print("{:<24}{}\n", k.name, k.summary);
+    for (const KernelInfo& k : kernel_list()) console.print("{:<24}{}\n", k.name, k.summary);
 }
 
 // ---- Drawing
@@ -440,24 +440,24 @@ Subject read_subject(const Options& o) {
     return file;
 }
 
-void emit(const Options& o, const std::string& command) {
+void emit(const Options& o, Console& console, const std::string& command) {
     if (o.is_taps_file()) {
         const TapsFile file = read_taps(o.kernel);
         const std::vector<ShaderFile> files = shaders_of(file, {file.kind, command, {}}, *o.emit);
-        return fmt::print("{}", files.front().text);
+        return console.write(files.front().text);
     }
-    for (const std::string_view name : shaders_for(o.kernel)) fmt::print("{}", kernel_shader(name, command, *o.emit));
+    for (const std::string_view name : shaders_for(o.kernel)) console.write(kernel_shader(name, command, *o.emit));
 }
 
-void run(const Options& o, const std::string& command) {
-    if (o.list) return print_list(o.json);
-    if (o.emit) return emit(o, command);
+void run(const Options& o, Console& console, const std::string& command) {
+    if (o.list) return print_list(console, o.json);
+    if (o.emit) return emit(o, console, command);
     if (!o.plot.empty()) check_output_path(o.plot);
     const Subject subject = read_subject(o);
     const Report report = analyze(o, subject);
     if (!o.plot.empty()) plot(o, report, subject);
-    if (o.json) print_json(to_json(report));
-    else print(report);
+    if (o.json) console.print_json(to_json(report));
+    else print(console, report);
 }
 
 }  // namespace
@@ -482,9 +482,9 @@ void add_analyze(Program& program) {
                      "relative to the output's position; those of radial kernels along x")
         ->type_name("F,...");
     verb->add_option("--from", o->from, "Print rows of the bank that takes N samples ...")
-        ->check(CLI::Range(1, 1 << 24))
+        ->check(in_range(1, 1 << 24))
         ->type_name("N");
-    verb->add_option("--to", o->to, "... to M, with renormalized edges")->check(CLI::Range(1, 1 << 24))->type_name("M");
+    verb->add_option("--to", o->to, "... to M, with renormalized edges")->check(in_range(1, 1 << 24))->type_name("M");
     verb->add_option("--rows", o->rows, "Which outputs; default all")->type_name("I,...");
     verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
         ->type_name("OUT");
@@ -495,7 +495,7 @@ void add_analyze(Program& program) {
         ->type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     add_json(verb, o->json);
     program.on(
-        verb, [o] { check(*o); }, [o, &program] { run(*o, program.command); });
+        verb, [o] { check(*o); }, [o, &program](Console& console) { run(*o, console, program.command); });
 }
 
 }  // namespace bandlimit::app

@@ -53,7 +53,7 @@ void check(const Options& o) {
             "another extension by --format");
     check_output_format("x." + o.format, o.depth);
     if (!(o.timeout > 0))
-        throw UsageError(fmt::format("--timeout: {} is no time to run in; pass seconds above 0", o.timeout));
+        throw UsageError(fmt::format("--timeout: {} is not a time to run in; pass seconds above 0", o.timeout));
 }
 
 /// Values as stored, whatever they mean.
@@ -206,7 +206,7 @@ std::string made_folder(const std::string& name) {
     return std::filesystem::canonical(name).string();
 }
 
-void run(const Options& o) {
+void run(const Options& o, Console& console) {
     const FormatAbilities format = abilities_of("x." + o.format);
     AuditSubject subject{o.command, format.name, std::string(name_of(o.file_depth())), o.grey ? 1 : 3};
     const std::string html = o.html.empty() ? "" : made_folder(o.html);
@@ -215,15 +215,15 @@ void run(const Options& o) {
     CommandResizer resizer(o, subject, o.keep.empty() ? temporary->path() : made_folder(o.keep));
     std::optional<Progress> progress;
     AuditOptions options{scales_of(o.scales), o.code(), format.alpha && !o.grey, [&](int done, int all) {
-                             if (!progress) progress.emplace("audit", all);
+                             if (!progress) progress.emplace(console, "audit", all);
                              progress->advance_to(done);
                          }};
     const AuditReport report = audit([&](View<const float> v, int w, int h) { return resizer(v, w, h); }, options);
     progress.reset();
     if (!html.empty()) write_audit_page(report, subject, html);
-    if (o.json) return print_json(json_of(report, subject));
-    fmt::print("{}", text_of(report, subject));
-    if (!html.empty()) fmt::print("\n{}/index.html\n", html);
+    if (o.json) return console.print_json(json_of(report, subject));
+    console.print_lines(text_of(report, subject));
+    if (!html.empty()) console.print("\n{}/index.html\n", html);
 }
 
 }  // namespace
@@ -254,9 +254,9 @@ void add_audit(Program& program) {
     verb->add_option("--html", o->html, "Write a page with plots and pictures to this folder")->type_name("DIR");
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
-    add_quiet(verb);
+    program.add_quiet(verb);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
 }
 
 }  // namespace bandlimit::app

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "apps/console.h"
+
 namespace bandlimit::app {
 namespace {
 
@@ -266,8 +268,9 @@ std::vector<Finding> findings_of(const AuditReport& report, const AuditSubject& 
 }
 
 std::string text_of(const AuditReport& report, const AuditSubject& subject) {
-    std::string text = fmt::format("{}\n  {} runs on {} {}, {} channels; the slowest took {:.2f} s\n", subject.command,
-                                   report.runs, subject.format, subject.depth, subject.channels, subject.seconds);
+    std::string text =
+        fmt::format("{}\n  {} runs on {} {}, {} channels; the slowest took {:.2f} s\n", visible(subject.command),
+                    report.runs, subject.format, subject.depth, subject.channels, subject.seconds);
     const std::vector<Finding> findings = findings_of(report, subject);
     for (const bool wrong : {true, false}) {
         text += wrong ? "\nWrong\n" : "\nFound\n";

@@ -12,8 +12,14 @@ public:
     Auditor() {
         std::filesystem::create_directory(shell_ / "tmp");
         ::setenv("TMPDIR", (shell_ / "tmp").c_str(), 1);
+        // The program finds itself by name, installed or not; the test, which runs in its place, does not.
+        const std::string folder = std::filesystem::path(BANDLIMIT_PROGRAM).parent_path();
+        ::setenv("PATH", (path_ + ":" + folder).c_str(), 1);
     }
-    ~Auditor() { ::unsetenv("TMPDIR"); }
+    ~Auditor() {
+        ::unsetenv("TMPDIR");
+        ::setenv("PATH", path_.c_str(), 1);
+    }
     Auditor(const Auditor&) = delete;
     Auditor& operator=(const Auditor&) = delete;
 
@@ -27,6 +33,7 @@ public:
 
 private:
     Shell shell_{BANDLIMIT_PROGRAM};
+    std::string path_ = ::getenv("PATH");
 };
 
 TEST(Audit, FindsOutAboutItself) {

@@ -150,12 +150,12 @@ void examine(Item& item, const Manifest& manifest) {
     }
 }
 
-std::vector<Item> examined_items(const BatchJob& batch, const Manifest& manifest) {
+std::vector<Item> examined_items(const BatchJob& batch, const Manifest& manifest, const Console& console) {
     std::error_code error;
     if (!fs::is_directory(batch.in, error))
         fail_file(batch.in, "is no directory; name the one that holds the pictures");
     std::vector<Item> items = items_of(batch);
-    Progress progress("looking", static_cast<double>(items.size()));
+    Progress progress(console, "looking", static_cast<double>(items.size()));
     std::mutex mutex;
     int done = 0;
     parallel_for(static_cast<std::ptrdiff_t>(items.size()), 1, batch.parallel,
@@ -173,7 +173,7 @@ std::vector<Item> examined_items(const BatchJob& batch, const Manifest& manifest
 /// Makes the textures that are due, several at a time.
 class Crew {
 public:
-    Crew(const BatchJob& batch, std::vector<Item>& items, Manifest& manifest)
+    Crew(const BatchJob& batch, std::vector<Item>& items, Manifest& manifest, const Console& console)
         : manifest_(manifest), threads_(batch.parallel.count()) {
         memory_ = batch.memory > 0 ? batch.memory : available_memory() / 4;
         for (Item& item : items)
@@ -184,7 +184,7 @@ public:
         // The largest first, so that none of them is left for the end, when it would keep one thread busy alone.
         std::stable_sort(waiting_.begin(), waiting_.end(),
                          [](const Item* a, const Item* b) { return a->cost.bytes > b->cost.bytes; });
-        progress_.emplace("making", static_cast<double>(pixels_) / 1e6, "MPix");
+        progress_.emplace(console, "making", static_cast<double>(pixels_) / 1e6, "MPix");
     }
 
     void run() {
@@ -321,9 +321,9 @@ BatchReport report_of(const std::vector<Item>& items) {
 
 }  // namespace
 
-std::vector<PlannedFile> plan_batch(const BatchJob& batch) {
+std::vector<PlannedFile> plan_batch(const BatchJob& batch, const Console& console) {
     std::vector<PlannedFile> plan;
-    for (const Item& item : examined_items(batch, Manifest(batch.out))) {
+    for (const Item& item : examined_items(batch, Manifest(batch.out), console)) {
         const bool fails = !item.error.empty();
         plan.push_back({item.input, item.output,
                         item.is_left_out  ? "left out"
@@ -335,14 +335,14 @@ std::vector<PlannedFile> plan_batch(const BatchJob& batch) {
     return plan;
 }
 
-BatchReport run_batch(const BatchJob& batch) {
+BatchReport run_batch(const BatchJob& batch, const Console& console) {
     const Stopwatch watch;
     Manifest manifest(batch.out);
-    std::vector<Item> items = examined_items(batch, manifest);
+    std::vector<Item> items = examined_items(batch, manifest, console);
     std::error_code error;
     fs::create_directories(batch.out, error);
     if (error) fail_file(batch.out, "the directory cannot be created: ", error.message(), "; choose another place");
-    Crew(batch, items, manifest).run();
+    Crew(batch, items, manifest, console).run();
     BatchReport report = report_of(items);
     report.seconds = watch.total();
     return report;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/console.h"
 #include "apps/mips_recipe.h"
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/texture/container.h"
@@ -43,14 +44,15 @@ struct BatchReport {
     double megapixels_per_second() const { return seconds > 0 ? static_cast<double>(pixels) / 1e6 / seconds : 0; }
 };
 
-/// What run_batch would do. Reads all pictures' bytes, writes nothing.
-std::vector<PlannedFile> plan_batch(const BatchJob& job);
+/// What run_batch would do. Shows its progress on `console`, as run_batch does. Reads all pictures' bytes, writes
+/// nothing.
+std::vector<PlannedFile> plan_batch(const BatchJob& job, const Console& console);
 
 /// Makes what is not up to date, several textures at a time, as many as threads and memory allow. What fails is listed
 /// and stops nothing. What is done is noted in a manifest in the output directory as work goes on, so that a later run
 /// goes on from there, however this one ended.
 ///
 /// throws  std::runtime_error for directories and rules that cannot be read or written
-BatchReport run_batch(const BatchJob& job);
+BatchReport run_batch(const BatchJob& job, const Console& console);
 
 }  // namespace bandlimit::app

@@ -192,8 +192,10 @@ json parse(const std::string& path) {
     };
     try {
         return json::parse(text, limit_depth);
-    } catch (const json::exception& e) {
-        fail_file(path, "is no JSON: ", e.what(), "; name a file of rules");
+    } catch (const json::parse_error& e) {
+        fail_file(path, "is not JSON from byte ", e.byte, " on; mend it there, or name a file of rules");
+    } catch (const json::exception&) {
+        fail_file(path, "holds a number that no computer number can hold; correct it");
     }
 }
 

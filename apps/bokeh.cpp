@@ -73,9 +73,9 @@ ChosenWeights weights_of(const Options& o) {
     return chosen;
 }
 
-void run(const Options& o) {
-    filter_picture(o.pictures, [&](const ImageInfo& in) {
-        return convolution_filter("bokeh", weights_of(o), o.choice, o.pictures, in);
+void run(const Options& o, Console& console) {
+    filter_picture(o.pictures, console, [&](const ImageInfo& in) {
+        return convolution_filter("bokeh", weights_of(o), o.choice, o.pictures, in, console);
     });
 }
 
@@ -111,14 +111,14 @@ void add_bokeh(Program& program) {
     add_choice(verb, o->choice);
     verb->add_option("--components", o->components,
                      "Run this many complex phasors fitted to the disc instead: an approximation")
-        ->check(CLI::Range(1, most_disk_components))
+        ->check(in_range(1, most_disk_components))
         ->excludes("--rank")
         ->excludes("--exact")
         ->excludes("--fft")
         ->type_name("N");
-    add_picture_options(verb, o->pictures);
+    add_picture_options(program, verb, o->pictures);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
 }
 
 }  // namespace bandlimit::app

@@ -70,7 +70,7 @@ std::string search_path() {
 [[noreturn]] void become(const char* command, const char* folder, const char* out, const char* err, char** variables,
                          const sigset_t& signals) {
     ::setpgid(0, 0);
-    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(s, SIG_DFL);
+    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGPIPE}) ::signal(s, SIG_DFL);
     ::pthread_sigmask(SIG_SETMASK, &signals, nullptr);
     const auto redirect = [](const char* path, int flags, int to) {
         const int file = ::open(path, flags, 0600);

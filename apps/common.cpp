@@ -1,43 +1,26 @@
 #include "apps/common.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 namespace bandlimit::app {
-namespace {
-
-std::FILE* real_stderr = stderr;
-bool quiet = false;
-
-/// Errors of CLI11 and of codecs may hold line breaks; ours is one line.
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
-    return text;
-}
-
-}  // namespace
-
 CLI::App* Program::add_verb(const std::string& name, const std::string& summary, const std::string& example) {
     CLI::App* verb = cli.add_subcommand(name, summary);
     verb->footer("Example:\n  " + example);
     return verb;
 }
 
-void Program::on(CLI::App* verb, std::function<void()> check, std::function<void()> run) {
+void Program::on(CLI::App* verb, std::function<void()> check, std::function<void(Console&)> run) {
     verb->callback([this, check = std::move(check), run = std::move(run)] {
         check();
-        selected = run;
+        selected = [this, run] { run(console); };
     });
 }
+
+void Program::add_quiet(CLI::App* verb) { verb->add_flag("--quiet", console.quiet, "No notes, no progress bar"); }
 
 void require_one_subcommand(CLI::App& app, const std::string& noun) {
     app.require_subcommand(0, 1);
@@ -48,8 +31,9 @@ void require_one_subcommand(CLI::App& app, const std::string& noun) {
         std::string names;
         for (const CLI::App* command : app.get_subcommands({}))
             names += (names.empty() ? "" : ", ") + command->get_name();
-        throw UsageError(fmt::format("{} {}; choose one of: {}",
-                                     words.empty() ? "there is no" : "\"" + words.front() + "\" is no", noun, names));
+        const std::string what = words.empty() ? fmt::format("a {} is missing", noun)
+                                               : fmt::format("\"{}\" is not a {}", words.front(), noun);
+        throw UsageError(fmt::format("{}; choose one of: {}", what, names));
     });
 }
 
@@ -84,7 +68,7 @@ CLI::Option* add_tiles(CLI::App* verb, int& tile) {
         ->add_option("--tiles", tile,
                      "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
                      "default: rows")
-        ->check(CLI::PositiveNumber)
+        ->check(in_range(1, 4096))
         ->type_name("N");
 }
 
@@ -94,15 +78,13 @@ CLI::Option* add_threads(CLI::App* verb, Parallel& parallel) {
             "--threads", parallel.threads,
             "Most threads to keep busy; 0 (default): one per core; 1: reading, filtering and writing take turns\n"
             "instead of overlapping")
-        ->check(CLI::Range(0, 1024))
+        ->check(in_range(0, 1024))
         ->type_name("N");
 }
 
 CLI::Option* add_json(CLI::App* verb, bool& json) {
     return verb->add_flag("--json", json, "Print a report as JSON on stdout, and nothing else there");
 }
-
-CLI::Option* add_quiet(CLI::App* verb) { return verb->add_flag("--quiet", quiet, "No notes, no progress bar"); }
 
 Shares shares_of(Parallel parallel) {
     // A codec that works in parallel keeps its stage's thread busy too; below three OpenImageIO does not try.
@@ -114,7 +96,7 @@ Shares shares_of(Parallel parallel) {
 Size parse_size(const std::string& option, const std::string& text) {
     const auto refuse = [&]() -> Size {
         throw UsageError(fmt::format(
-            "{}: \"{}\" is no size; write WIDTHxHEIGHT, as 1920x1080, each from 1 to 2147483647", option, text));
+            "{}: \"{}\" is not a size; write WIDTHxHEIGHT, as 1920x1080, each from 1 to 2147483647", option, text));
     };
     Size size;
     const char* const end = text.data() + text.size();
@@ -130,13 +112,13 @@ double parse_number(const std::string& option, const std::string& text) {
         double value = 0;
         const auto [end, status] = std::from_chars(part.data(), part.data() + part.size(), value);
         if (status != std::errc{} || end != part.data() + part.size() || !std::isfinite(value))
-            throw UsageError(fmt::format("{}: \"{}\" is no number; write as 0.25 or 1/6", option, text));
+            throw UsageError(fmt::format("{}: \"{}\" is not a number; write it as 0.25 or 1/6", option, text));
         return value;
     };
     const auto slash = text.find('/');
     if (slash == std::string::npos) return read(text);
     const double denominator = read(std::string_view(text).substr(slash + 1));
-    if (denominator == 0) throw UsageError(fmt::format("{}: \"{}\" divides by zero; write as 1/6", option, text));
+    if (denominator == 0) throw UsageError(fmt::format("{}: \"{}\" divides by zero; write it as 1/6", option, text));
     return read(std::string_view(text).substr(0, slash)) / denominator;
 }
 
@@ -159,53 +141,6 @@ void check_output_format(const std::string& path, std::optional<Depth> depth, in
     std::string depths;
     for (const Depth d : format.depths) depths += (depths.empty() ? "" : ", ") + std::string(name_of(d));
     throw UsageError(fmt::format("--depth: {} files cannot hold {}; choose {}", format.name, name_of(*depth), depths));
-}
-
-void print_json(const nlohmann::ordered_json& report) {
-    // Names of files need not be UTF-8, JSON must.
-    fmt::print("{}\n", report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-}
-
-void note(const std::string& text) {
-    if (!quiet) fmt::print(real_stderr, "bandlimit: note: {}\n", one_line(text));
-}
-
-void print_error(const std::string& what) { fmt::print(real_stderr, "bandlimit: error: {}\n", one_line(what)); }
-
-void silence_codecs() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose reports go to the same place
-    const int kept = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
-    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (kept < 0 || nowhere < 0) return;
-    real_stderr = fdopen(kept, "w");
-    std::setvbuf(real_stderr, nullptr, _IONBF, 0);
-    dup2(nowhere, STDERR_FILENO);
-    close(nowhere);
-#endif
-}
-
-Progress::Progress(std::string label, double total, std::string unit)
-    : label_(std::move(label)),
-      unit_(std::move(unit)),
-      total_(total),
-      visible_(!quiet && isatty(fileno(real_stderr)) != 0) {}
-
-Progress::~Progress() {
-    if (drawn_ != Clock::time_point{}) fmt::print(real_stderr, "\r\x1b[K");
-}
-
-void Progress::advance_to(double done) {
-    using namespace std::chrono_literals;
-    const auto now = Clock::now();
-    if (!visible_ || now - start_ < 2s || now - drawn_ < 100ms || done <= 0) return;
-    drawn_ = now;
-    constexpr int width = 30;
-    const double share = std::min(1.0, done / total_);
-    const auto filled = static_cast<std::size_t>(share * width);
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const std::string rate = unit_.empty() ? "" : fmt::format("{:.1f} {}/s  ", done / elapsed, unit_);
-    fmt::print(real_stderr, "\r\x1b[K{} [{:<{}}] {:3.0f} %  {}{:.0f} s left", label_, std::string(filled, '#'), width,
-               100 * share, rate, elapsed * (1 / share - 1));
 }
 
 }  // namespace bandlimit::app

@@ -1,4 +1,4 @@
-// What the verbs share: options, errors, notes, progress.
+// What the verbs share: options and errors.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "apps/console.h"
 #include "bandlimit/color/depth.h"
 #include "bandlimit/core/edge.h"
 #include "bandlimit/core/parallel.h"
@@ -21,17 +22,20 @@ struct UsageError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The program: verbs add themselves to `cli` and name what to run.
+/// A run of the program: verbs add themselves to `cli` and name what to run.
 struct Program {
+    Console& console;
+    std::string command = {};  ///< the command line as one would paste it
     CLI::App cli{"bandlimit: sampling done right, for graphics", "bandlimit"};
-    std::function<void()> selected;  ///< set by parsing
-    std::string command;             ///< the command line as one would paste it
+    std::function<void()> selected = {};  ///< set by parsing
 
     /// Adds a verb; `example` is a command line that works as pasted, or several, each on a line that begins with two
     /// blanks but the first.
     CLI::App* add_verb(const std::string& name, const std::string& summary, const std::string& example);
     /// `check` sees the parsed options and throws Error or UsageError (exit 2); `run` does the work.
-    void on(CLI::App* verb, std::function<void()> check, std::function<void()> run);
+    void on(CLI::App* verb, std::function<void()> check, std::function<void(Console&)> run);
+    /// Adds --quiet.
+    void add_quiet(CLI::App* verb);
 };
 
 /// Makes `app`, which has all its subcommands, take exactly one of them; a message that lists them, each of which is a
@@ -50,6 +54,19 @@ void add_design(Program& program);
 void add_audit(Program& program);
 void add_tour(Program& program);
 
+/// For options that are numbers: refuses others than `least` to `most`.
+template <class Number>
+CLI::Validator in_range(Number least, Number most) {
+    const std::string range = fmt::format("{} to {}", least, most);
+    return {[=](std::string& text) {
+                Number value{};
+                if (!CLI::detail::lexical_cast(text, value) || !(value >= least && value <= most))
+                    return fmt::format("\"{}\" is out of range; pass {}", text, range);
+                return std::string();
+            },
+            range};
+}
+
 /// Options that many verbs have, with one wording.
 CLI::Option* add_space(CLI::App* verb, Space& space);
 CLI::Option* add_depth(CLI::App* verb, std::optional<Depth>& depth);
@@ -58,7 +75,6 @@ CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge);
 CLI::Option* add_tiles(CLI::App* verb, int& tile);
 CLI::Option* add_threads(CLI::App* verb, Parallel& parallel);
 CLI::Option* add_json(CLI::App* verb, bool& json);
-CLI::Option* add_quiet(CLI::App* verb);
 
 /// How many threads codecs may use for what they do in parallel, and how many are left for the stages of a pipeline
 /// that reads and writes through them: together no more than the caller allows.
@@ -82,27 +98,6 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 /// (UsageError). A path that exists and is no regular file is refused before that, as a matter of the file system.
 void check_output_format(const std::string& path, std::optional<Depth> depth, int tile = 0);
 
-/// Writes `report` to stdout, and nothing else.
-void print_json(const nlohmann::ordered_json& report);
-
-/// A line on the real stderr for something the user should know, unless --quiet.
-void note(const std::string& text);
-
-/// A bar on a terminal, once the work has lasted two seconds; with the rate where the work has a `unit`.
-class Progress {
-public:
-    explicit Progress(std::string label, double total, std::string unit = {});
-    ~Progress();
-    void advance_to(double done);
-
-private:
-    using Clock = std::chrono::steady_clock;
-    std::string label_, unit_;
-    double total_;
-    Clock::time_point start_ = Clock::now(), drawn_{};
-    bool visible_ = false;
-};
-
 /// Seconds that pieces of work took, added up.
 class Stopwatch {
 public:
@@ -122,10 +117,5 @@ public:
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// Routes what codecs print by themselves to nowhere, and keeps the real stderr for us.
-void silence_codecs();
-/// One line on the real stderr.
-void print_error(const std::string& what);
 
 }  // namespace bandlimit::app

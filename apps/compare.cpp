@@ -165,7 +165,7 @@ struct Result {
 };
 
 /// Takes all rows of both files through the meters and the windows.
-Metrics pass_rows(const Options& o, Source& a, Source& b, Measure as, WindowCollector& window_a,
+Metrics pass_rows(const Options& o, Console& console, Source& a, Source& b, Measure as, WindowCollector& window_a,
                   WindowCollector& window_b) {
     const int width = a.info().width, height = a.info().height, channels = a.info().channels();
     ErrorMeter errors(width, height, channels, o.border, o.parallel);
@@ -173,7 +173,7 @@ Metrics pass_rows(const Options& o, Source& a, Source& b, Measure as, WindowColl
     std::optional<DiffWriter> diff;
     if (!o.diff.empty()) diff.emplace(o.diff, a.info(), o.parallel.threads);
 
-    Progress progress("comparing", height);
+    Progress progress(console, "comparing", height);
     for (int y = 0, rows = 0; y < height; y += rows) {
         rows = std::min(block_rows, height - y);
         const View<const float> va = a.read(y, rows, as, o.space, o.parallel);
@@ -192,11 +192,11 @@ Metrics pass_rows(const Options& o, Source& a, Source& b, Measure as, WindowColl
     return summarize(std::move(per_channel));
 }
 
-Result measure(const Options& o, Source& a, Source& b, Measure as) {
+Result measure(const Options& o, Console& console, Source& a, Source& b, Measure as) {
     const ImageInfo& info = a.info();
     const ShiftWindow window = window_within(info.width, info.height, o.border);
     WindowCollector window_a(window, info.channels()), window_b(window, info.channels());
-    Metrics metrics = pass_rows(o, a, b, as, window_a, window_b);
+    Metrics metrics = pass_rows(o, console, a, b, as, window_a, window_b);
     return {std::move(metrics), shift_of(o, a, b, as, window_a.view(), window_b.view())};
 }
 
@@ -250,32 +250,32 @@ std::string shift_text(const std::optional<double>& shift, const char* below, co
     return std::abs(rounded) < 0.005 ? text : fmt::format("{}  (B lies {} A)", text, rounded < 0 ? below : above);
 }
 
-void print(const Options& o, const ImageInfo& info, Measure as, const Result& r) {
-    fmt::print("A  {}\nB  {}\n", o.a, o.b);
-    fmt::print("{} x {}, {} channel{}, {} values, white is 1", info.width, info.height, info.channels(),
-               info.channels() == 1 ? "" : "s", as == Measure::encoded ? "encoded" : "linear");
-    if (o.border > 0) fmt::print(", without a border of {}", o.border);
-    fmt::print("\n\n");
-    fmt::print("{:<10}{:>12}{:>10}{:>12}{:>10}\n", "", "MSE", "PSNR/dB", "max |A-B|", "SSIM");
-    const auto line = [](const std::string& name, const Measures& m) {
-        fmt::print("{:<10}{:>12.5g}{:>10}{:>12.6f}{:>10.6f}\n", name, m.mse, psnr_text(m.psnr()), m.max_abs, m.ssim);
+void print(Console& console, const Options& o, const ImageInfo& info, Measure as, const Result& r) {
+    console.print("A  {}\nB  {}\n", o.a, o.b);
+    console.print("{} x {}, {} channel{}, {} values, white is 1", info.width, info.height, info.channels(),
+                  info.channels() == 1 ? "" : "s", as == Measure::encoded ? "encoded" : "linear");
+    if (o.border > 0) console.print(", without a border of {}", o.border);
+    console.print("\n\n");
+    console.print("{:<10}{:>12}{:>10}{:>12}{:>10}\n", "", "MSE", "PSNR/dB", "max |A-B|", "SSIM");
+    const auto line = [&](const std::string& name, const Measures& m) {
+        console.print("{:<10}{:>12.5g}{:>10}{:>12.6f}{:>10.6f}\n", name, m.mse, psnr_text(m.psnr()), m.max_abs, m.ssim);
     };
     line("all", r.metrics);
     for (std::size_t c = 0; info.channels() > 1 && c < r.metrics.per_channel.size(); ++c)
         line(info.channel_names[c], r.metrics.per_channel[c]);
-    fmt::print("\nshift x   {}\nshift y   {}\n", shift_text(r.shift.x, "left of", "right of"),
-               shift_text(r.shift.y, "above", "below"));
+    console.print("\nshift x   {}\nshift y   {}\n", shift_text(r.shift.x, "left of", "right of"),
+                  shift_text(r.shift.y, "above", "below"));
 }
 
-void run(const Options& o) {
+void run(const Options& o, Console& console) {
     if (!o.diff.empty()) check_output_path(o.diff);
     Source a(o.a, o.parallel.threads), b(o.b, o.parallel.threads);
     check_same_shape(o, a.info(), b.info());
     const bool codes = is_integer(a.info().depth) && is_integer(b.info().depth);
     const Measure as = o.measure.value_or(codes ? Measure::encoded : Measure::linear);
-    const Result result = measure(o, a, b, as);
-    if (o.json) print_json(report(o, a.info(), as, result));
-    else print(o, a.info(), as, result);
+    const Result result = measure(o, console, a, b, as);
+    if (o.json) console.print_json(report(o, a.info(), as, result));
+    else print(console, o, a.info(), as, result);
 }
 
 }  // namespace
@@ -288,7 +288,7 @@ void add_compare(Program& program) {
     verb->add_option("B", o->b, "The second image; a shift above 0 means that its content lies right of or below A's")
         ->required();
     verb->add_option("--border", o->border, "Pixels to leave out on every side; default 0")
-        ->check(CLI::Range(0, 1 << 30))
+        ->check(in_range(0, 1 << 30))
         ->type_name("N");
     add_space(verb, o->space);
     verb->add_option_function<std::string>(
@@ -307,13 +307,13 @@ void add_compare(Program& program) {
         ->type_name("OUT");
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
-    add_quiet(verb);
+    program.add_quiet(verb);
     program.on(
         verb,
         [o] {
             if (!o->diff.empty()) check_output_format(o->diff, {});
         },
-        [o] { run(*o); });
+        [o](Console& console) { run(*o, console); });
 }
 
 }  // namespace bandlimit::app

@@ -87,12 +87,12 @@ ChosenWeights weights_of_file(const Options& o) {
     return chosen;
 }
 
-void run(const Options& o) {
+void run(const Options& o, Console& console) {
     ChosenWeights chosen;
     if (o.taps.empty()) chosen = {centred(read_weights(o.image)), 0, 1, o.image};
     else chosen = weights_of_file(o);
-    filter_picture(o.pictures, [&](const ImageInfo& in) {
-        return convolution_filter("convolve", std::move(chosen), o.choice, o.pictures, in);
+    filter_picture(o.pictures, console, [&](const ImageInfo& in) {
+        return convolution_filter("convolve", std::move(chosen), o.choice, o.pictures, in, console);
     });
 }
 
@@ -113,12 +113,12 @@ void add_convolve(Program& program) {
         ->type_name("KERNEL");
     verb->add_option("--axis", o->axis, "Axis for taps of one axis (default both)")->type_name("x|y|both");
     verb->add_option("--radius", o->radius, "Radius in pixels, for components of a taps.json")
-        ->check(CLI::Range(0.5, 1000.0))
+        ->check(in_range(0.5, 1000.0))
         ->type_name("PX");
     add_choice(verb, o->choice);
-    add_picture_options(verb, o->pictures);
+    add_picture_options(program, verb, o->pictures);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
 }
 
 }  // namespace bandlimit::app

@@ -45,45 +45,47 @@ std::string cost_line(const Design& d, const Size& size) {
                               bytes_text(texel * (pixels + between)), bytes_text(texel * (outputs + between)));
 }
 
-void print(const Design& d, const Options& o) {
-    for (const std::string& line : d.lines) fmt::print("{}\n", line);
-    if (d.file.cost) fmt::print("{}\n", cost_line(d, parse_size("--size", o.size)));
-    for (const std::string& line : d.table) fmt::print("{}\n", line);
+void print(Console& console, const Design& d, const Options& o) {
+    for (const std::string& line : d.lines) console.print("{}\n", line);
+    if (d.file.cost) console.print("{}\n", cost_line(d, parse_size("--size", o.size)));
+    for (const std::string& line : d.table) console.print("{}\n", line);
 }
 
-void ship(const Design& d, const Options& o, const ShaderInfo& info) {
+void ship(Console& console, const Design& d, const Options& o, const ShaderInfo& info) {
     if (o.emit_to.empty()) {
         // What follows the first file are other ways to run the design, or whole compute shaders.
         const std::vector<ShaderFile> files = shaders_of(d.file, info, *o.emit);
-        fmt::print("{}", files.front().text);
-        for (std::size_t i = 1; i < files.size(); ++i) note(fmt::format("{} is for --emit-to DIR", files[i].name));
+        console.write(files.front().text);
+        for (std::size_t i = 1; i < files.size(); ++i)
+            console.note(fmt::format("{} is for --emit-to DIR", files[i].name));
         return;
     }
     const auto all = all_dialects();
     const std::vector<Dialect> dialects = o.emit ? std::vector{*o.emit} : std::vector<Dialect>{all.begin(), all.end()};
     const auto names = write_shaders(d.file, info, dialects, o.emit_to);
-    note(fmt::format("{} shaders in {}", names.size(), o.emit_to));
+    console.note(fmt::format("{} shaders in {}", names.size(), o.emit_to));
 }
 
 /// What the functions of a design are called if nothing else is asked for: as what they do.
 std::string default_name(const std::string& kind) { return kind == "kernel" ? "sample_kernel" : kind; }
 
-void run(const Options& o, const std::string& command, const std::function<Design()>& make) {
+void run(const Options& o, Console& console, const std::string& command, const std::function<Design(Console&)>& make) {
     for (const std::string& path : {o.output, o.plot})
         if (!path.empty()) check_output_path(path);
-    const Design design = make();
+    const Design design = make(console);
     if (!o.plot.empty()) draw(design.panels, o.plot, 420 * static_cast<int>(design.panels.size()), 380);
     if (!o.output.empty()) write_taps(o.output, design.file);
     if (o.emit || !o.emit_to.empty())
-        ship(design, o, {o.name.empty() ? default_name(design.file.kind) : o.name, command, design.lines});
-    if (o.json) fmt::print("{}", taps_text(design.file));
-    else if (!o.emit || !o.emit_to.empty()) print(design, o);
+        ship(console, design, o, {o.name.empty() ? default_name(design.file.kind) : o.name, command, design.lines});
+    if (o.json) console.write(taps_text(design.file));
+    else if (!o.emit || !o.emit_to.empty()) print(console, design, o);
 }
 
 }  // namespace
 
 CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
-                          const std::string& example, std::function<void()> check, std::function<Design()> make) {
+                          const std::string& example, std::function<void()> check,
+                          std::function<Design(Console&)> make) {
     auto o = std::make_shared<Options>();
     CLI::App* app = verb.cli->add_subcommand(name, summary);
     app->footer("Example:\n  " + example);
@@ -100,14 +102,16 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
     app->add_option("--emit-to", o->emit_to, "Write all its shaders, in all dialects or that of --emit, to a directory")
         ->type_name("DIR");
     app->add_option("--name", o->name, "What its functions are called; default: the kind of design")->type_name("NAME");
-    add_quiet(app);
+    verb.program.add_quiet(app);
     verb.program.on(
         app,
         [o, check = std::move(check)] {
             check_outputs(*o);
             check();
         },
-        [o, &program = verb.program, make = std::move(make)] { run(*o, program.command, make); });
+        [o, &program = verb.program, make = std::move(make)](Console& console) {
+            run(*o, console, program.command, make);
+        });
     return app;
 }
 

@@ -31,7 +31,8 @@ struct DesignVerb {
 /// `check` sees the parsed options, and throws Error or UsageError for what they alone show to be wrong; `make` does
 /// the work, once all outputs are known to be possible.
 CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
-                          const std::string& example, std::function<void()> check, std::function<Design()> make);
+                          const std::string& example, std::function<void()> check,
+                          std::function<Design(Console&)> make);
 
 /// The subcommands, each in a file of its own.
 void add_design_disk(const DesignVerb& verb);

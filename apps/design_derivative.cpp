@@ -24,7 +24,8 @@ struct Options {
 
 void check(Options& o) {
     if (o.optimal != "taylor" && o.optimal != "least-squares")
-        throw UsageError(fmt::format("--optimal: \"{}\" is no criterion; choose taylor or least-squares", o.optimal));
+        throw UsageError(
+            fmt::format("--optimal: \"{}\" is not a criterion; choose taylor or least-squares", o.optimal));
     o.options.optimal = o.optimal == "taylor" ? Optimal::taylor : Optimal::least_squares;
     o.options.band = parse_number("--band", o.band);
     o.design = design_derivative(o.options);
@@ -81,7 +82,7 @@ void add_design_derivative(const DesignVerb& verb) {
     CLI::App* app = add_design_kind(
         verb, "derivative", "Taps that differentiate along an axis, for gradients and normals",
         "bandlimit design derivative --taps 9 --optimal least-squares --ramp --plot derivative.svg", [o] { check(*o); },
-        [o] { return make(*o); });
+        [o](Console&) { return make(*o); });
     app->add_option("--taps", o->options.taps,
                     "How many, 2 to 255: odd on a sample, even halfway between two. Default 5")
         ->type_name("N");

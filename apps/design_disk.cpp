@@ -27,7 +27,7 @@ struct Options {
 void check(const Options& o) {
     const bool is_published = o.preset == "published";
     if (!is_published && o.preset != "fit")
-        throw UsageError(fmt::format("--preset: \"{}\" is no preset; choose fit or published", o.preset));
+        throw UsageError(fmt::format("--preset: \"{}\" is not a preset; choose fit or published", o.preset));
     if (o.components < 1 || o.components > most_disk_components)
         throw UsageError(fmt::format("--components: {} phasors; choose 1 to {}", o.components, most_disk_components));
     if (is_published && o.components > 2)
@@ -131,7 +131,7 @@ void add_design_disk(const DesignVerb& verb) {
     CLI::App* app = add_design_kind(
         verb, "disk", "A disc out of separable filters: complex phasors times Gaussians, for depth of field",
         "bandlimit design disk --components 2 --radius 25 --plot disk.svg -o disk.json", [o] { check(*o); },
-        [o] { return make(*o); });
+        [o](Console&) { return make(*o); });
     app->add_option("--components", o->components,
                     "Phasors, 1 to 5; each costs two pictures between the passes. Default 2")
         ->type_name("N");
@@ -140,12 +140,12 @@ void add_design_disk(const DesignVerb& verb) {
         ->type_name("NAME");
     app->add_option("--radius", o->radius,
                     "Radius of the disc in pixels: adds its weights, as terms. Costs are told for 25 otherwise")
-        ->check(CLI::Range(0.01, largest_radius))
+        ->check(in_range(0.01, largest_radius))
         ->type_name("PX");
     app->add_option("--reach", o->reach,
                     "Weights left and right of the middle one; default: until at most 1 % of the sum is left out; "
                     "for published as far as in Garcia 2017")
-        ->check(CLI::Range(0, longest_reach))
+        ->check(in_range(0, longest_reach))
         ->type_name("PX");
 }
 

@@ -265,23 +265,23 @@ void add_design_downsample(const DesignVerb& design) {
     CLI::App* app = add_design_kind(
         design, "downsample", "Shrink by a whole factor, or double, without more aliasing than must be",
         "bandlimit design downsample --fetches 12 --max-gain 1.05 --plot downsample.svg -o downsample.json",
-        [o] { check(*o); }, [o] { return make(*o); });
+        [o] { check(*o); }, [o](Console&) { return make(*o); });
     app->add_option("--factor", o->goal.factor, "How many samples become one, 2 to 16; default 2")->type_name("N");
     app->add_flag("--upsample", o->goal.upsample, "Double instead: the filter of one of the four outputs per texel");
     app->add_option("--taps", o->where.taps,
                     "Alone: this many taps along each axis. With --fetches or --threshold: read within so many\n"
                     "texels a side")
-        ->check(CLI::Range(1, 256))
+        ->check(in_range(1, 256))
         ->type_name("N");
     app->add_option("--fetches", o->fetches,
                     "This many bilinear reads, positions and weights optimised together; default 8 (9 for odd\n"
                     "factors, 4 to double, 16 in a square)")
-        ->check(CLI::Range(1, 64))
+        ->check(in_range(1, 64))
         ->type_name("N");
     app->add_option("--threshold", o->where.threshold,
                     "With --taps N: leave out what of the N x N best weights is below it, optimise the others, and\n"
                     "fold them into fetches")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->type_name("T");
     app->add_option_function<std::string>(
            "--layout", [o](const std::string& s) { o->where.layout = parse_layout(s); },

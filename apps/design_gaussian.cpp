@@ -33,7 +33,7 @@ void check(Options& o) {
     const auto named = std::find_if(forms.begin(), forms.end(), [&](const NamedForm& f) { return o.form == f.name; });
     if (named == forms.end())
         throw UsageError(
-            fmt::format("--form: \"{}\" is no form; choose least-squares, sampled, integrated or discrete", o.form));
+            fmt::format("--form: \"{}\" is not a form; choose least-squares, sampled, integrated or discrete", o.form));
     o.options.form = named->form;
     o.options.sigma = parse_number("--sigma", o.sigma);
     o.design = design_gaussian(o.options);
@@ -88,7 +88,8 @@ void add_design_gaussian(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
     CLI::App* app = add_design_kind(
         verb, "gaussian", "A Gaussian blur in as few bilinear reads as you like",
-        "bandlimit design gaussian --sigma 2 --fetches 5 --emit glsl", [o] { check(*o); }, [o] { return make(*o); });
+        "bandlimit design gaussian --sigma 2 --fetches 5 --emit glsl", [o] { check(*o); },
+        [o](Console&) { return make(*o); });
     app->add_option("--sigma", o->sigma, "Standard deviation in source texels, 0.1 to 250")->required()->type_name("S");
     app->add_option("--fetches", o->options.fetches,
                     "Bilinear reads along each axis, 1 to 2048; N of them hold 2N - 1 taps. Default: what reaches\n"

@@ -22,7 +22,7 @@ struct Options {
 
 void check(Options& o) {
     if (o.use != "grow" && o.use != "shrink")
-        throw UsageError(fmt::format("--for: \"{}\" is no use; choose grow or shrink", o.use));
+        throw UsageError(fmt::format("--for: \"{}\" is not a use; choose grow or shrink", o.use));
     o.options.use = o.use == "grow" ? Use::grow : Use::shrink;
     o.options.radius = parse_number("--radius", o.radius);
     o.options.slope = parse_number("--slope", o.slope);
@@ -87,7 +87,7 @@ void add_design_kernel(const DesignVerb& verb) {
     CLI::App* app = add_design_kind(
         verb, "kernel", "A kernel of polynomial pieces, fitted to a response; its shifted copies sum to 1",
         "bandlimit design kernel --radius 2 --interpolating --plot kernel.svg -o kernel.json", [o] { check(*o); },
-        [o] { return make(*o); });
+        [o](Console&) { return make(*o); });
     app->add_option("--radius", o->radius, "In source pitches, 0.5 to 8; default 2")->type_name("R");
     app->add_option("--pieces", o->options.pieces,
                     "Polynomials of equal length from -R to R, 1 to 64; default one per pitch, 2R")

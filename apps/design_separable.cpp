@@ -203,7 +203,7 @@ std::vector<Panel> panels_of(const Analysis& a, const WeightGrid& weights, int r
 
 // ---- Making it
 
-Design make(const Options& o) {
+Design make(const Options& o, Console& console) {
     const Analysis a = analyse(o);
     const int wanted = o.rank.value_or(std::min(largest_rank, is_shape_name(o.kernel) ? a.nearly : a.above_noise));
     if (wanted > a.count())
@@ -220,7 +220,7 @@ Design make(const Options& o) {
     add(value_lines(a, rank));
     double loss = separable_loss(a.kernel, expanded(terms), o.loss);
     if (o.optimise) {
-        Progress progress("optimise", 1);
+        Progress progress(console, "optimise", 1);
         const SeparableFit fit =
             optimise_separable(a.kernel, terms, o.loss, [&](double done) { progress.advance_to(done); });
         design.lines.push_back(
@@ -258,7 +258,7 @@ void add_design_separable(const DesignVerb& verb) {
         verb, "separable", "Any kernel as a sum of few separable ones: columns times rows",
         "bandlimit design separable disc:50:0.8 --rank 4 --optimise --keep-zeros 0.3 --non-negative 0.5 --plot "
         "disc.png",
-        [o] { check(*o); }, [o] { return make(*o); });
+        [o] { check(*o); }, [o](Console& console) { return make(*o, console); });
     app->add_option("kernel", o->kernel,
                     "An image of a kernel, or a shape on SIZE x SIZE points from -1 to 1:\n" + shape_lines())
         ->required()

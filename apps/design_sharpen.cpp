@@ -65,7 +65,7 @@ void add_design_sharpen(const DesignVerb& verb) {
     CLI::App* app = add_design_kind(
         verb, "sharpen", "Taps that undo what a kernel takes from the pass band",
         "bandlimit design sharpen --undo bspline --taps 7 --plot sharpen.svg -o sharpen.json", [o] { check(*o); },
-        [o] { return make(*o); });
+        [o](Console&) { return make(*o); });
     app->add_option("--undo", o->undo,
                     "Kernel whose droop is undone, as bspline (analyze --list shows all): sharpen before enlarging by\n"
                     "it, or after shrinking by it")

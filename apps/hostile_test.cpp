@@ -50,7 +50,9 @@ TEST(BadInput, TruncatedFilesLeaveNothingBehind) {
         for (const double share : {0.1, 0.8}) {
             write_bytes(shell / cut,
                         bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
-            EXPECT_TRUE(fails(1, shell("resize " + cut + " out.png --scale 0.5 --depth u8"), cut)) << share;
+            // What codecs print by themselves is for the program to keep away.
+            const std::string line = "resize " + cut + " out.png --scale 0.5 --depth u8";
+            EXPECT_TRUE(fails(1, share < 0.5 ? shell(line) : shell.start(line), cut)) << share;
             EXPECT_EQ(shell.files(), before) << cut << " " << share;
         }
         std::filesystem::remove(shell / whole);

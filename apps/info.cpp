@@ -13,37 +13,37 @@ struct Options {
     bool json = false;
 };
 
-void run_image(const Options& options) {
+void run_image(const Options& options, Console& console) {
     const ImageReader reader(options.file, 1);
     const ImageInfo& info = reader.info();
     if (options.json) {
-        print_json({{"file", options.file},
-                    {"format", info.format},
-                    {"width", info.width},
-                    {"height", info.height},
-                    {"channels", info.channels()},
-                    {"channel_names", info.channel_names},
-                    {"depth", name_of(info.depth)},
-                    {"alpha", info.alpha < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(info.alpha)},
-                    {"associated_alpha", info.associated},
-                    {"color_hint", info.color_hint},
-                    {"transfer", name_of(info.transfer)},
-                    {"levels", info.levels},
-                    {"subimages", info.subimages},
-                    {"orientation", info.orientation}});
+        console.print_json({{"file", options.file},
+                            {"format", info.format},
+                            {"width", info.width},
+                            {"height", info.height},
+                            {"channels", info.channels()},
+                            {"channel_names", info.channel_names},
+                            {"depth", name_of(info.depth)},
+                            {"alpha", info.alpha < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(info.alpha)},
+                            {"associated_alpha", info.associated},
+                            {"color_hint", info.color_hint},
+                            {"transfer", name_of(info.transfer)},
+                            {"levels", info.levels},
+                            {"subimages", info.subimages},
+                            {"orientation", info.orientation}});
         return;
     }
-    fmt::print("{}: {}\n", options.file, info.format);
-    fmt::print("  size      {} x {}\n", info.width, info.height);
-    fmt::print("  channels  {} ({})\n", info.channels(), fmt::join(info.channel_names, " "));
-    fmt::print("  depth     {}\n", name_of(info.depth));
+    console.print("{}: {}\n", options.file, info.format);
+    console.print("  size      {} x {}\n", info.width, info.height);
+    console.print("  channels  {} ({})\n", info.channels(), fmt::join(info.channel_names, " "));
+    console.print("  depth     {}\n", name_of(info.depth));
     if (info.alpha >= 0)
-        fmt::print("  alpha     {}\n", info.associated ? "associated (premultiplied)" : "unassociated (straight)");
-    fmt::print("  colour    {}, read as {}{}\n", info.color_hint.empty() ? "no hint" : info.color_hint,
-               name_of(info.transfer), info.has_foreign_profile ? " (ICC profile kept)" : "");
-    fmt::print("  levels    {}\n", info.levels);
-    if (info.subimages > 1) fmt::print("  images    {} (the first is used)\n", info.subimages);
-    if (info.orientation != 1) fmt::print("  turned    upright from orientation {}\n", info.orientation);
+        console.print("  alpha     {}\n", info.associated ? "associated (premultiplied)" : "unassociated (straight)");
+    console.print("  colour    {}, read as {}{}\n", info.color_hint.empty() ? "no hint" : info.color_hint,
+                  name_of(info.transfer), info.has_foreign_profile ? " (ICC profile kept)" : "");
+    console.print("  levels    {}\n", info.levels);
+    if (info.subimages > 1) console.print("  images    {} (the first is used)\n", info.subimages);
+    if (info.orientation != 1) console.print("  turned    upright from orientation {}\n", info.orientation);
 }
 
 std::vector<std::string> channel_names(const TexelFormat& texels) {
@@ -90,30 +90,33 @@ nlohmann::ordered_json json_of(const Options& options, const ContainerInfo& info
             {"level_sizes", levels}};
 }
 
-void run_texture(const Options& options) {
+void run_texture(const Options& options, Console& console) {
     const ContainerInfo info = texture_info(options.file);
     if (options.json) {
-        print_json(json_of(options, info));
+        console.print_json(json_of(options, info));
         return;
     }
     const TexelFormat& texels = info.texels;
-    fmt::print("{}: {}\n", options.file, info.container == Container::ktx2 ? "ktx2" : "dds");
-    fmt::print("  size      {} x {}\n", info.width, info.height);
-    if (info.is_array) fmt::print("  layers    {}\n", info.layers);
-    if (info.is_cube) fmt::print("  faces     6 (+x -x +y -y +z -z)\n");
-    fmt::print("  texels    {}\n", info.format);
-    fmt::print("  channels  {} ({})\n", texels.channels, fmt::join(channel_names(texels), " "));
-    fmt::print("  depth     {}\n", name_of(texels.depth));
+    console.print("{}: {}\n", options.file, info.container == Container::ktx2 ? "ktx2" : "dds");
+    console.print("  size      {} x {}\n", info.width, info.height);
+    if (info.is_array) console.print("  layers    {}\n", info.layers);
+    if (info.is_cube) console.print("  faces     6 (+x -x +y -y +z -z)\n");
+    console.print("  texels    {}\n", info.format);
+    console.print("  channels  {} ({})\n", texels.channels, fmt::join(channel_names(texels), " "));
+    console.print("  depth     {}\n", name_of(texels.depth));
     if (texels.channels == 4)
-        fmt::print("  alpha     {}\n", texels.premultiplied ? "associated (premultiplied)" : "unassociated (straight)");
-    fmt::print("  colour    {}\n", name_of(encoding_of(texels, false).transfer));
-    fmt::print("  levels    {}\n", info.levels);
+        console.print("  alpha     {}\n",
+                      texels.premultiplied ? "associated (premultiplied)" : "unassociated (straight)");
+    console.print("  colour    {}\n", name_of(encoding_of(texels, false).transfer));
+    console.print("  levels    {}\n", info.levels);
     for (int level = 0; level < info.levels; ++level)
-        fmt::print("  {:7}   {} x {}, {} bytes\n", level, mip_length(info.width, level), mip_length(info.height, level),
-                   level_bytes(info, level));
+        console.print("  {:7}   {} x {}, {} bytes\n", level, mip_length(info.width, level),
+                      mip_length(info.height, level), level_bytes(info, level));
 }
 
-void run(const Options& options) { container_of_file(options.file) ? run_texture(options) : run_image(options); }
+void run(const Options& options, Console& console) {
+    container_of_file(options.file) ? run_texture(options, console) : run_image(options, console);
+}
 
 }  // namespace
 
@@ -125,7 +128,7 @@ void add_info(Program& program) {
     verb->add_option("FILE", options->file, "Image, .ktx2 or .dds to look at")->required();
     add_json(verb, options->json);
     program.on(
-        verb, [] {}, [options] { run(*options); });
+        verb, [] {}, [options](Console& console) { run(*options, console); });
 }
 
 }  // namespace bandlimit::app

@@ -1,6 +1,6 @@
 // Measures kernels and holds the tables of docs/kernels.md to what comes out. It prints them, so that a change of a
 // kernel is a change of that page:
-//   build/dev/tests/app_kernels
+//   build/release/tests/apps --gtest_filter=KernelTables.*
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 

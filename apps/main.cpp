@@ -1,6 +1,5 @@
-// bandlimit VERB: parses the command line, runs the verb, and turns exceptions into one line and an exit code.
+// bandlimit VERB: what belongs to the process. All else is run().
 #include <fcntl.h>
-#include <fmt/core.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -8,15 +7,27 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 
 #include "apps/command.h"
-#include "apps/common.h"
-#include "bandlimit/core/targets.h"
+#include "apps/program.h"
+#include "bandlimit/io/image_file.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define REPORTS_OF_SANITIZERS
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define REPORTS_OF_SANITIZERS
+#endif
+#endif
 
 namespace {
 
 using namespace bandlimit;
+
+std::FILE* err = stderr;  ///< the real one, also for those that cannot be given it
 
 extern "C" void stop(int signal_number) {
     app::abandon_commands();
@@ -27,14 +38,17 @@ extern "C" void stop(int signal_number) {
 
 void handle_signals() {
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then shows as an error of write, like a full disk
+    std::signal(SIGPIPE, SIG_IGN);  // and so does a reader that has gone
     for (const int s : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(s, stop) == SIG_IGN) std::signal(s, SIG_IGN);  // nohup means it
 }
 
-/// Keeps the numbers of closed standard streams from going to files. What is written there fails, as it did before.
+/// Keeps the numbers of closed standard streams from going to files. What is written to stdout then fails, as it did
+/// before; errors have nowhere to go.
 void reserve_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-        if (fcntl(stream, F_GETFD) < 0) (void)!open("/dev/null", O_RDONLY);  // takes the lowest free number: this one
+        if (fcntl(stream, F_GETFD) < 0)  // open() takes the lowest free number: this one
+            (void)!open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
 }
 
 /// Gives buffers back when they are freed. By itself the allocator of glibc raises this limit to the largest that was
@@ -45,43 +59,32 @@ void keep_no_freed_memory() {
 #endif
 }
 
-/// Sets program.selected, or returns the exit code of a command line that is wrong.
-std::optional<int> parse(app::Program& program, int argc, char** argv) {
-    try {
-        program.cli.parse(argc, argv);
-        current_target();  // throws where BANDLIMIT_TARGETS holds none
-        return {};
-    } catch (const CLI::Success& asks) {  // for help or the version
-        program.selected = [&program, asks] { program.cli.exit(asks); };
-        return {};
-    } catch (const CLI::ParseError& e) {
-        app::print_error(std::string(e.what()) + "; see bandlimit --help, or bandlimit VERB --help");
-    } catch (const app::UsageError& e) {
-        app::print_error(e.what());
-    } catch (const Error& e) {
-        app::print_error(e.what());
-    } catch (const std::exception& e) {  // of the file system: an output that is no regular file
-        app::print_error(e.what());
-        return 1;
+/// Routes what codecs print by themselves to nowhere, and keeps the real stderr as `err`.
+void silence_codecs() {
+#ifndef REPORTS_OF_SANITIZERS  // which go to the same place
+    const int kept = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+    std::FILE* const real = kept < 0 ? nullptr : fdopen(kept, "w");
+    if (!real) return;
+    std::setvbuf(real, nullptr, _IONBF, 0);
+    err = real;
+    if (const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) {
+        dup2(nowhere, STDERR_FILENO);
+        close(nowhere);
     }
-    return 2;
+#endif
 }
 
-int run(const std::function<void()>& work) {
-    constexpr const char* no_stdout = "stdout cannot be written; is it closed, or the disk full?";
+/// Where memory runs out and nothing may be thrown, as in a thread of a library. All else is a mistake in the program.
+[[noreturn]] void give_up() noexcept {
     try {
-        work();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw std::runtime_error(no_stdout);
-        return 0;
-    } catch (const app::UsageError& e) {
-        app::print_error(e.what());
-        return 2;
+        if (std::current_exception()) std::rethrow_exception(std::current_exception());
     } catch (const std::bad_alloc&) {
-        app::print_error("memory is exhausted; use a smaller size, or close other programs");
-    } catch (const std::exception& e) {
-        app::print_error(std::ferror(stdout) ? no_stdout : e.what());
+        app::Console({stdout, err}).error("memory is exhausted; use a smaller size, or close other programs");
+        remove_unfinished_files();
+        _exit(1);
+    } catch (...) {
     }
-    return 1;
+    std::abort();
 }
 
 }  // namespace
@@ -90,24 +93,8 @@ int main(int argc, char** argv) {
     keep_no_freed_memory();
     reserve_standard_streams();
     handle_signals();
-    app::silence_codecs();
-    app::Program program;
-    program.command = "bandlimit";
-    for (int i = 1; i < argc; ++i) program.command += " " + app::quoted(argv[i]);
-    program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
-    program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
-    app::add_resize(program);
-    app::add_convolve(program);
-    app::add_bokeh(program);
-    app::add_mips(program);
-    app::add_pattern(program);
-    app::add_compare(program);
-    app::add_analyze(program);
-    app::add_design(program);
-    app::add_audit(program);
-    app::add_info(program);
-    app::add_tour(program);
-    app::require_one_subcommand(program.cli, "verb");
-    if (const auto code = parse(program, argc, argv)) return *code;
-    return run(program.selected);
+    silence_codecs();
+    std::set_terminate(give_up);
+    const std::size_t count = argc > 0 ? static_cast<std::size_t>(argc - 1) : 0;
+    return app::run({argv + argc - count, count}, {stdout, err});
 }

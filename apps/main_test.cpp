@@ -1,5 +1,6 @@
 // The command line as such: usage, help, examples, streams.
 #include <array>
+#include <limits>
 
 #include "apps/run_program_test.h"
 #include "bandlimit/core/sanitized_test.h"
@@ -26,7 +27,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
     };
     for (const auto& [line, word] : {
              Case{"", "resize, convolve, bokeh, mips, pattern, compare, analyze, design, audit, info, tour"},
-             {"frob", "\"frob\" is no verb"},
+             {"frob", "\"frob\" is not a verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},
              {resize, "--size"},
@@ -57,7 +58,7 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
              {"resize examples/coffee.png out.xyz --scale 1", "png, jpg, tif, exr"},
              {"resize examples/coffee.png out --scale 1", "png, jpg, tif, exr"},
              {"pattern", "zoneplate"},
-             {"pattern moire out.png --size 8x8", "\"moire\" is no kind of signal"},
+             {"pattern moire out.png --size 8x8", "\"moire\" is not a kind of signal"},
              {"pattern --bogus checker out.png --size 8x8", "--bogus"},
              {"pattern checker out.png", "--size"},
              {pattern + "--cell 0", "checkerboard"},
@@ -124,7 +125,8 @@ TEST(CommandLine, TheExamplesOfEveryHelpWorkAsPasted) {
         ASSERT_FALSE(examples.empty()) << help;
         for (const std::string& example : examples) {
             EXPECT_TRUE(example.starts_with(command)) << help;
-            EXPECT_TRUE(succeeds(shell(example))) << example;
+            // An audit of the program finds it beside itself.
+            EXPECT_TRUE(succeeds(command == "audit" ? shell.start(example) : shell(example))) << example;
         }
     }
     EXPECT_EQ(shell.files().count("half.png") + shell.files().count("bspline.svg"), 2u);
@@ -135,7 +137,7 @@ TEST(CommandLine, TheTourIsAPageWithItsPictures) {
     const Shell shell(BANDLIMIT_PROGRAM);
     const Outcome help = shell("tour --help");
     ASSERT_EQ(examples_of(help), std::vector<std::string>{"tour out"});
-    const Outcome tour = shell("tour out");
+    const Outcome tour = shell.start("tour out");  // it runs the program too
     ASSERT_TRUE(succeeds(tour));
     EXPECT_NE(tour.out.find("out/index.html"), std::string::npos) << tour;
     const std::string page = bytes_of(shell / "out/index.html");
@@ -152,6 +154,28 @@ TEST(CommandLine, TheTourIsAPageWithItsPictures) {
         EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
 }
 
+TEST(CommandLine, NothingOutlastsARun) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    AnyImage image = image_of<float>(8, 8, 3, [](int, int, int) { return std::numeric_limits<float>::infinity(); });
+    save(shell / "in.exr", image);
+    const std::string line = "resize in.exr out.png --scale 1";
+    EXPECT_EQ(stderr_lines(shell(line)).size(), 1u);
+    EXPECT_EQ(stderr_lines(shell(line + " --quiet")).size(), 0u);
+    EXPECT_EQ(stderr_lines(shell(line)).size(), 1u);
+}
+
+TEST(CommandLine, TheProgramSaysWhatTheFunctionSays) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_examples(shell);
+    for (const std::string line : {"--version", "--help", "resize --help", "info examples/coffee.png", "info none.png",
+                                   "resize", "", "compare examples/coffee.png examples/coffee.png --json"}) {
+        const Outcome here = shell(line), started = shell.start(line);
+        EXPECT_EQ(started.code, here.code) << line;
+        EXPECT_EQ(started.out, here.out) << line;
+        EXPECT_EQ(stderr_lines(started), stderr_lines(here)) << line;
+    }
+}
+
 TEST(CommandLine, AReportThatCannotBeWrittenIsExitCode1) {
     const Shell shell(BANDLIMIT_PROGRAM);
     add_examples(shell);
@@ -159,15 +183,15 @@ TEST(CommandLine, AReportThatCannotBeWrittenIsExitCode1) {
          {"resize examples/gravel.png out.png --scale 0.1 --json", "info examples/coffee.png",
           "compare examples/gravel.png examples/gravel.png --json", "analyze tent --from 900 --to 300",
           "pattern box out.png --size 8x8 --json", "--version", "resize --help"})
-        EXPECT_TRUE(fails(1, shell(line, {.out_to = "/dev/full"}), "stdout")) << line;
+        EXPECT_TRUE(fails(1, shell(line, {.streams = {{STDOUT_FILENO, "/dev/full"}}}), "stdout")) << line;
     for (const std::string line : {"resize examples/gravel.png out.png --scale 0.1 --json", "analyze --list", "--help"})
-        EXPECT_TRUE(fails(1, shell(line, {.has_no_stdout = true}), "stdout")) << line;
+        EXPECT_TRUE(fails(1, shell(line, {.streams = {{STDOUT_FILENO, ""}}}), "stdout")) << line;
 }
 
 TEST(CommandLine, ClosedStreamsDoNotReachFiles) {
     // The first file that is opened must not take the place of stdout.
     const Shell shell(BANDLIMIT_PROGRAM);
-    EXPECT_EQ(shell("pattern box out.png --size 8x8", {.has_no_stdout = true}).code, 0);
+    EXPECT_EQ(shell("pattern box out.png --size 8x8", {.streams = {{STDOUT_FILENO, ""}}}).code, 0);
     EXPECT_EQ(read_image(shell / "out.png").index(), std::size_t(Depth::u8));
 }
 

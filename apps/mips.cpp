@@ -48,13 +48,14 @@ void check(Options& o) {
 
 std::string_view name_of(MipSource from) { return from == MipSource::base ? "base" : "previous"; }
 
-void note_choices(const MipsJob& job, const MipsReport& report) {
+void note_choices(const Console& console, const MipsJob& job, const MipsReport& report) {
     const std::string& path = job.inputs.front();
     if (report.role && report.role->from != "option")
-        note(fmt::format("{} has the role {}, because {}; --role chooses another", path, name_of(report.role->role),
-                         report.role->because.empty() ? "its name says nothing else"
-                                                      : "its name holds \"" + report.role->because + "\""));
-    for (const std::string& text : notes_of(report, path)) note(text);
+        console.note(fmt::format("{} has the role {}, because {}; --role chooses another", path,
+                                 name_of(report.role->role),
+                                 report.role->because.empty() ? "its name says nothing else"
+                                                              : "its name holds \"" + report.role->because + "\""));
+    for (const std::string& text : notes_of(report, path)) console.note(text);
 }
 
 ordered_json levels_json(const MipsReport& report) {
@@ -99,38 +100,36 @@ std::string twice(std::string_view x, std::string_view y) {
     return x == y ? std::string(x) : fmt::format("{} along x, {} along y", x, y);
 }
 
-void print(const Options& o, const MipsReport& r) {
-    fmt::print("{}: {}", o.job.output, r.format);
-    if (r.layers > 1) fmt::print(", {} layers", r.layers);
-    if (r.faces > 1) fmt::print(", {} faces", r.faces);
-    fmt::print("\n  texels    {} x {}, {} channel{} of {}{}{}\n", r.levels.front().width, r.levels.front().height,
-               r.channels, r.channels == 1 ? "" : "s", name_of(r.depth), r.is_srgb ? ", sRGB" : "",
-               r.is_premultiplied ? ", premultiplied" : "");
+void print(Console& console, const Options& o, const MipsReport& r) {
+    console.print("{}: {}", o.job.output, r.format);
+    if (r.layers > 1) console.print(", {} layers", r.layers);
+    if (r.faces > 1) console.print(", {} faces", r.faces);
+    console.print("\n  texels    {} x {}, {} channel{} of {}{}{}\n", r.levels.front().width, r.levels.front().height,
+                  r.channels, r.channels == 1 ? "" : "s", name_of(r.depth), r.is_srgb ? ", sRGB" : "",
+                  r.is_premultiplied ? ", premultiplied" : "");
     if (r.role) {
-        fmt::print("  role      {}{}\n", name_of(r.role->role),
-                   r.role->because.empty() ? "" : " (" + r.role->because + ")");
-        fmt::print("  filter    {}, from {}\n", twice(r.filter_x, r.filter_y),
-                   o.job.recipe.from == MipSource::base ? "level 0" : "the level above");
-        fmt::print("  edge      {}\n",
-                   r.faces > 1 ? "the neighbouring face" : twice(name_of(r.edge_x), name_of(r.edge_y)));
+        console.print("  role      {}{}\n", name_of(r.role->role),
+                      r.role->because.empty() ? "" : " (" + r.role->because + ")");
+        console.print("  filter    {}, from {}\n", twice(r.filter_x, r.filter_y),
+                      o.job.recipe.from == MipSource::base ? "level 0" : "the level above");
+        console.print("  edge      {}\n",
+                      r.faces > 1 ? "the neighbouring face" : twice(name_of(r.edge_x), name_of(r.edge_y)));
     }
     for (std::size_t level = 0; level < r.levels.size(); ++level) {
         const MipsReport::Level& l = r.levels[level];
-        fmt::print("  level {:<3} {:>5} x {:<5} {:>11} bytes", level, l.width, l.height, l.bytes);
-        if (l.coverage) fmt::print("  {:6.2f} % pass", 100 * *l.coverage);
-        if (!l.file.empty()) fmt::print("  {}", l.file);
-        fmt::print("\n");
+        console.print("  level {:<3} {:>5} x {:<5} {:>11} bytes", level, l.width, l.height, l.bytes);
+        if (l.coverage) console.print("  {:6.2f} % pass", 100 * *l.coverage);
+        if (!l.file.empty()) console.print("  {}", l.file);
+        console.print("\n");
     }
 }
 
-void run_one(const Options& o) {
+void run_one(const Options& o, Console& console) {
     const Stopwatch watch;
-    MipsJob job = o.job;
-    job.shows_progress = true;
-    const MipsReport report = make_texture(job, o.parallel);
-    note_choices(o.job, report);
-    if (o.json) print_json(report_of(o, report, watch.total()));
-    else print(o, report);
+    const MipsReport report = make_texture(o.job, o.parallel, &console);
+    note_choices(console, o.job, report);
+    if (o.json) console.print_json(report_of(o, report, watch.total()));
+    else print(console, o, report);
 }
 
 ordered_json report_of(const BatchReport& r) {
@@ -141,21 +140,21 @@ ordered_json report_of(const BatchReport& r) {
             {"roles", r.roles},       {"seconds", r.seconds}, {"megapixels_per_second", r.megapixels_per_second()}};
 }
 
-void print(const BatchReport& r) {
-    fmt::print("{} pictures: {} made, {} up to date, {} failed", r.files(), r.made, r.skipped, r.failed.size());
-    if (r.left_out > 0) fmt::print(", {} more left out by the rules", r.left_out);
-    fmt::print("; {:.1f} s", r.seconds);
-    if (r.made > 0) fmt::print(", {:.1f} MPix/s", r.megapixels_per_second());
-    fmt::print("\n");
-    for (const auto& [role, count] : r.roles) fmt::print("  {:<13} {:>6}\n", role, count);
-    if (!r.failed.empty()) fmt::print("failed:\n");
-    for (const BatchReport::Failure& f : r.failed) fmt::print("  {}: {}\n", f.file, f.error);
+void print(Console& console, const BatchReport& r) {
+    console.print("{} pictures: {} made, {} up to date, {} failed", r.files(), r.made, r.skipped, r.failed.size());
+    if (r.left_out > 0) console.print(", {} more left out by the rules", r.left_out);
+    console.print("; {:.1f} s", r.seconds);
+    if (r.made > 0) console.print(", {:.1f} MPix/s", r.megapixels_per_second());
+    console.print("\n");
+    for (const auto& [role, count] : r.roles) console.print("  {:<13} {:>6}\n", role, count);
+    if (!r.failed.empty()) console.print("failed:\n");
+    for (const BatchReport::Failure& f : r.failed) console.print("  {}: {}\n", f.file, f.error);
 }
 
-void print(const std::vector<PlannedFile>& plan) {
+void print(Console& console, const std::vector<PlannedFile>& plan) {
     for (const PlannedFile& file : plan)
-        fmt::print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
-                   file.because.empty() ? "" : " (" + file.because + ")");
+        console.print("{:<11} {:<13} {}{}\n", file.state, file.role, file.input,
+                      file.because.empty() ? "" : " (" + file.because + ")");
 }
 
 ordered_json report_of(const std::vector<PlannedFile>& plan) {
@@ -169,14 +168,14 @@ ordered_json report_of(const std::vector<PlannedFile>& plan) {
     return {{"plan", files}};
 }
 
-void run_many(const Options& o) {
+void run_many(const Options& o, Console& console) {
     if (o.batch.is_dry) {
-        const std::vector<PlannedFile> plan = plan_batch(o.batch);
-        return o.json ? print_json(report_of(plan)) : print(plan);
+        const std::vector<PlannedFile> plan = plan_batch(o.batch, console);
+        return o.json ? console.print_json(report_of(plan)) : print(console, plan);
     }
-    const BatchReport report = run_batch(o.batch);
-    for (const std::string& text : report.notes) note(text);
-    o.json ? print_json(report_of(report)) : print(report);
+    const BatchReport report = run_batch(o.batch, console);
+    for (const std::string& text : report.notes) console.note(text);
+    o.json ? console.print_json(report_of(report)) : print(console, report);
     if (!report.failed.empty())
         throw std::runtime_error(fmt::format("{} of {} pictures failed; mend those that are listed, and run this again",
                                              report.failed.size(), report.files()));
@@ -224,7 +223,7 @@ std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Optio
                    "or renormalize (the default); one for both axes, or two as wrap,clamp",
                    "EDGE|X,Y"));
     options.push_back(verb->add_option("--levels", recipe.levels, "How many levels, level 0 included; default: all")
-                          ->check(CLI::Range(1, 31))
+                          ->check(in_range(1, 31))
                           ->type_name("N"));
     options.push_back(add_space(verb, recipe.space)
                           ->description("What the input's codes mean: auto (default: what role and file say), srgb,\n"
@@ -249,7 +248,7 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
         if (CLI::AsSizeValue(false)(bytes).empty() && parse_number(option, bytes) >= 1) return std::stoull(bytes);
     } catch (const CLI::Error&) {  // of the unit
     }
-    throw UsageError(fmt::format("{}: \"{}\" is no amount of memory; write as 512MB or 4GB", option, text));
+    throw UsageError(fmt::format("{}: \"{}\" is not an amount of memory; write it as 512MB or 4GB", option, text));
 }
 
 void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {
@@ -306,9 +305,10 @@ void add_mips(Program& program) {
     add_batch(verb, o);
     add_threads(verb, o->parallel)->description("Most threads to keep busy; 0 (default): one per core");
     add_json(verb, o->json);
-    add_quiet(verb);
+    program.add_quiet(verb);
     program.on(
-        verb, [o] { check(*o); }, [o] { o->is_batch ? run_many(*o) : run_one(*o); });
+        verb, [o] { check(*o); },
+        [o](Console& console) { o->is_batch ? run_many(*o, console) : run_one(*o, console); });
 }
 
 }  // namespace bandlimit::app

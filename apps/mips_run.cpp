@@ -268,13 +268,13 @@ bool goes_by_rows(const MipsJob& job, const Inputs& in, const TexelFormat& texel
 
 /// The same as make_texture(), by rows.
 void make_by_rows(const MipsJob& job, const TexelFormat& texels, const MipOptions& options, Parallel parallel,
-                  MipsReport& report) {
+                  const Console* console, MipsReport& report) {
     const Shares shares = shares_of(parallel);
     ImageReader reader(job.inputs.front(), shares.codecs.threads);
     const ImageInfo& info = reader.info();
     const MipsStreamReport stream =
         stream_texture(reader, encoding_of_image(info, options.role, job.recipe.space), texels, options, job.is_array,
-                       job.output, *container_of_path(job.output), shares.stages, job.shows_progress);
+                       job.output, *container_of_path(job.output), shares.stages, console);
     TextureShape shape{texels, info.width, info.height};
     shape.levels = options.levels > 0 ? options.levels : mip_count(info.width, info.height);
     describe(shape, job, {}, report);
@@ -353,7 +353,7 @@ MipsCost cost_of(const MipsJob& job) {
                    goes_by_rows(job, in, target.texels, options_of(job.recipe, choice.role)));
 }
 
-MipsReport make_texture(const MipsJob& job, Parallel parallel) {
+MipsReport make_texture(const MipsJob& job, Parallel parallel, const Console* console) {
     const bool has_files = !container_of_path(job.output);
     check_output_path(has_files ? path_of_level(job.output, 0) : job.output);
     if (job.keep_levels) return copy_levels(job, parallel.threads);
@@ -372,7 +372,7 @@ MipsReport make_texture(const MipsJob& job, Parallel parallel) {
     report.filter_x = name_of(options.filter, in.width), report.filter_y = name_of(options.filter, in.height);
     report.edge_x = options.edge_x, report.edge_y = options.edge_y;
     if (goes_by_rows(job, in, target.texels, options)) {
-        make_by_rows(job, target.texels, options, parallel, report);
+        make_by_rows(job, target.texels, options, parallel, console, report);
         return report;
     }
     require_memory(cost_of(in, target.texels, job.recipe, false).bytes,

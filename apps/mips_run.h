@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/console.h"
 #include "apps/mips_recipe.h"
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/texture/texture.h"
@@ -16,8 +17,7 @@ struct MipsJob {
     std::vector<std::string> inputs;
     std::string output;  ///< .ktx2, .dds, or images of a pattern, "name_%d.png"
     bool is_cube = false, is_array = false;
-    bool shows_progress = false;  ///< on a terminal
-    bool keep_levels = false;     ///< copy the levels of the one texture that is read; the recipe has no say
+    bool keep_levels = false;  ///< copy the levels of the one texture that is read; the recipe has no say
     MipsRecipe recipe;
 };
 
@@ -48,10 +48,11 @@ struct MipsReport {
 /// What the user should know about the picture `path` that became this.
 std::vector<std::string> notes_of(const MipsReport& report, const std::string& path);
 
-/// Reads, filters, writes. Whatever fails, nothing of the output appears.
+/// Reads, filters, writes. Whatever fails, nothing of the output appears. Shows its progress on `console`,
+/// if there is one.
 ///
 /// throws  UsageError for options that do not fit the role; std::runtime_error and Error for files and pictures
-MipsReport make_texture(const MipsJob& job, Parallel parallel);
+MipsReport make_texture(const MipsJob& job, Parallel parallel, const Console* console = nullptr);
 
 /// What a job takes, as far as headers tell.
 struct MipsCost {

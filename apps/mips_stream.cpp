@@ -58,7 +58,7 @@ int largest_need(const MipStream& stream) {
 
 MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, const TexelFormat& texels,
                                 const MipOptions& options, bool is_array, const std::string& path, Container container,
-                                Parallel parallel, bool shows_progress) {
+                                Parallel parallel, const Console* console) {
     const ImageInfo& in = reader.info();
     MipStream stream(in.width, in.height, in.channels(), in.depth, stored, texels, options, parallel);
     const int source_rows = largest_need(stream);
@@ -73,7 +73,7 @@ MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, con
     MipsStreamReport report;
     Stopwatch watch;
     std::optional<Progress> progress;
-    if (shows_progress) progress.emplace("mips", stream.steps());
+    if (console) progress.emplace(*console, "mips", stream.steps());
     const MipStream::Sink sink{[&](int level, int, int count) { return levels.place(level, count); },
                                [&](int level, int first, const AnyView& rows) {
                                    watch.time(report.write, [&] { levels.write(level, first, rows); });

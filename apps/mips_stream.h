@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "apps/console.h"
 #include "bandlimit/io/image_file.h"
 #include "bandlimit/texture/container.h"
 #include "bandlimit/texture/mips.h"
@@ -15,14 +16,14 @@ struct MipsStreamReport {
 };
 
 /// Makes the levels of the picture in `reader`, whose codes mean `stored`, where MipStream::is_possible(), and writes
-/// them to `path` as `container`, an array of one layer or none, with a progress bar if asked for. While rows are
-/// filtered, the next are read, unless `parallel` is one thread.
+/// them to `path` as `container`, an array of one layer or none, with a progress bar on `console` if there is one. While
+/// rows are filtered, the next are read, unless `parallel` is one thread.
 ///
 /// memory   some 500 rows of the picture and 200 of each level as floats: 200 MB where it is 65536 texels wide; all
 ///          rows of all levels under Edge::wrap along y
 /// throws   what reader, MipStream and AtomicFile throw. The file appears whole or not at all
 MipsStreamReport stream_texture(ImageReader& reader, const Encoding& stored, const TexelFormat& texels,
                                 const MipOptions& options, bool is_array, const std::string& path, Container container,
-                                Parallel parallel, bool shows_progress);
+                                Parallel parallel, const Console* console);
 
 }  // namespace bandlimit::app

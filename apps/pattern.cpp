@@ -99,7 +99,8 @@ struct Seconds {
 constexpr int band_samples = 1 << 22;  // of the image held at a time: 16 MB of floats
 
 /// Draws and writes the image by bands of rows: one is written while the next is drawn.
-Seconds draw(const Options& o, const Signal& signal, const Sampling& sampling, const ImageTarget& target) {
+Seconds draw(const Options& o, Console& console, const Signal& signal, const Sampling& sampling,
+             const ImageTarget& target) {
     const Grid grid = grid_of({target.width, target.height});
     const int rows = std::clamp(band_samples / target.width, 1, target.height);
     const int channels = static_cast<int>(target.channel_names.size());
@@ -116,7 +117,7 @@ Seconds draw(const Options& o, const Signal& signal, const Sampling& sampling, c
     const auto encoded = [&](int i) {
         return rows_of(view_of(stored[static_cast<std::size_t>(i % 2)]), 0, rows_of_band(i));
     };
-    Progress progress("pattern", target.height);
+    Progress progress(console, "pattern", target.height);
     Stopwatch watch;
     Seconds seconds;
     const auto render_band = [&](int i, Parallel parallel) {
@@ -147,24 +148,24 @@ Signal signal_of(const Options& o, Size size, const Sampling& sampling) {
     }
 }
 
-void run(const Options& o) {
+void run(const Options& o, Console& console) {
     const Size size = parse_size("--size", o.size);
     check_output_path(o.out);
     const Sampling sampling = sampling_of(o);
     const ImageTarget target = target_of(o, size);
-    const Seconds seconds = draw(o, signal_of(o, size, sampling), sampling, target);
+    const Seconds seconds = draw(o, console, signal_of(o, size, sampling), sampling, target);
     if (!o.json) return;
-    print_json({{"kind", o.kind},
-                {"file", o.out},
-                {"width", size.width},
-                {"height", size.height},
-                {"channels", target.channel_names.size()},
-                {"antialias", o.antialias},
-                {"samples", sampling.mode == Sampling::Mode::supersampled ? o.samples : 1},
-                {"depth", name_of(target.depth)},
-                {"transfer", name_of(target.transfer)},
-                {"threads", o.parallel.count()},
-                {"seconds", {{"render", seconds.render}, {"write", seconds.write}}}});
+    console.print_json({{"kind", o.kind},
+                        {"file", o.out},
+                        {"width", size.width},
+                        {"height", size.height},
+                        {"channels", target.channel_names.size()},
+                        {"antialias", o.antialias},
+                        {"samples", sampling.mode == Sampling::Mode::supersampled ? o.samples : 1},
+                        {"depth", name_of(target.depth)},
+                        {"transfer", name_of(target.transfer)},
+                        {"threads", o.parallel.count()},
+                        {"seconds", {{"render", seconds.render}, {"write", seconds.write}}}});
 }
 
 /// Options of one kind: each sets a member of the options of its signal.
@@ -183,7 +184,8 @@ public:
     template <class Integer>
     void integer(const std::string& name, Integer& target, const std::string& help) {
         CLI::Option* option = kind_->add_option(name, target, help)->type_name("N");
-        if constexpr (std::is_unsigned_v<Integer>) option->check(CLI::NonNegativeNumber);  // the parser would wrap it
+        if constexpr (std::is_unsigned_v<Integer>)
+            option->check(in_range(0.0, 18446744073709551615.0));  // the parser would wrap it
     }
     void flag(const std::string& name, bool& target, const std::string& help) { kind_->add_flag(name, target, help); }
     void point(const std::string& name, std::optional<Point>& target, const std::string& help) {
@@ -202,7 +204,7 @@ private:
             const std::vector<double> values = parse_numbers(name, s);
             if (values.size() != count)
                 throw UsageError(
-                    fmt::format("{}: \"{}\" is no {}; write {} numbers with commas", name, s, type, count));
+                    fmt::format("{}: \"{}\" is not {}; write {} numbers with commas", name, s, type, count));
             set(values);
         };
         kind_->add_option_function<std::string>(name, parse, help)->type_name(type);
@@ -211,7 +213,7 @@ private:
     CLI::App* kind_;
 };
 
-void add_common(CLI::App* kind, const std::shared_ptr<Options>& o) {
+void add_common(Program& program, CLI::App* kind, const std::shared_ptr<Options>& o) {
     kind->add_option("OUT", o->out, "Image to write; the extension names the format")->required();
     kind->add_option("--size", o->size, "Size in pixels, as 512x512")->required()->type_name("WxH");
     kind->add_option("--antialias", o->antialias,
@@ -219,7 +221,7 @@ void add_common(CLI::App* kind, const std::shared_ptr<Options>& o) {
                      "where a closed form is known (all but siemens and noise); or a kernel, supersampled")
         ->type_name("none|exact|KERNEL");
     kind->add_option("--samples", o->samples, "Samples per pixel and axis for --antialias KERNEL; default 8")
-        ->check(CLI::Range(1, 1024))
+        ->check(in_range(1, 1024))
         ->type_name("N");
     KindOptions numbers(kind);
     numbers.number("--low", o->low, "Linear light where the signal is 0; default 0", "L");
@@ -233,12 +235,12 @@ void add_common(CLI::App* kind, const std::shared_ptr<Options>& o) {
             "--channels", o->channels,
             "1 grey, 2 grey and alpha, 3 RGB, 4 RGBA, all colours alike, alpha opaque; default: 1, or 3 where\n"
             "the format has no grey")
-        ->check(CLI::Range(1, 4))
+        ->check(in_range(1, 4))
         ->type_name("N");
     add_tiles(kind, o->tile);
     add_threads(kind, o->parallel);
     add_json(kind, o->json);
-    add_quiet(kind);
+    program.add_quiet(kind);
 }
 
 /// Adds a kind whose signal is make(size, options); `add` adds the options of its own.
@@ -256,9 +258,9 @@ void add_kind(Program& program, CLI::App* verb, const std::string& name, const s
     kind->footer(fmt::format("Example:\n  bandlimit pattern {} {}", name, example));
     KindOptions options(kind);
     add(options, *own);
-    add_common(kind, o);
+    add_common(program, kind, o);
     program.on(
-        kind, [o] { check(*o); }, [o] { run(*o); });
+        kind, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
 }
 
 Frame frame_of(Size size) { return {double(size.width), double(size.height)}; }

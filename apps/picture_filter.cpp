@@ -42,9 +42,10 @@ void treat_alpha_as_asked(Space space, bool premultiply, int source_alpha, bool 
     to.alpha = premultiply ? target_alpha : -1;
 }
 
-void note_foreign_profile(const std::string& file, const ImageInfo& in, Space space) {
+void note_foreign_profile(const Console& console, const std::string& file, const ImageInfo& in, Space space) {
     if (in.has_foreign_profile && space == Space::automatic)
-        note(fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", file));
+        console.note(
+            fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", file));
 }
 
 CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply) {
@@ -66,7 +67,7 @@ void add_pictures(CLI::App* verb, PictureOptions& o) {
     verb->add_option("OUT", o.out, "Image to write; the extension names the format")->required();
 }
 
-void add_picture_options(CLI::App* verb, PictureOptions& o) {
+void add_picture_options(Program& program, CLI::App* verb, PictureOptions& o) {
     add_edge(verb, o.edge);
     add_space(verb, o.space);
     add_alpha(verb, o.premultiply);
@@ -74,12 +75,13 @@ void add_picture_options(CLI::App* verb, PictureOptions& o) {
     add_tiles(verb, o.tile);
     add_threads(verb, o.parallel);
     add_json(verb, o.json);
-    add_quiet(verb);
+    program.add_quiet(verb);
 }
 
 void check_pictures(const PictureOptions& o) { check_output_format(o.out, o.depth, o.tile); }
 
-void filter_picture(const PictureOptions& o, const std::function<PictureFilter(const ImageInfo& in)>& make) {
+void filter_picture(const PictureOptions& o, Console& console,
+                    const std::function<PictureFilter(const ImageInfo& in)>& make) {
     check_output_path(o.out);
     Stopwatch watch;
     StreamReport stream;
@@ -90,17 +92,17 @@ void filter_picture(const PictureOptions& o, const std::function<PictureFilter(c
     double plan = 0;
     PictureFilter filter = watch.time(plan, [&] { return make(in); });
     require_memory(filter.memory, fmt::format("{} {} x {} pixels", filter.rows.doing, in.width, in.height));
-    note_foreign_profile(o.in, in, o.space);
+    note_foreign_profile(console, o.in, in, o.space);
 
     ImageWriter writer(o.out, target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
     treat_alpha_as_asked(o.space, o.premultiplies(), in.alpha, in.associated, target.alpha, from, to);
-    stream_rows(filter.rows, reader, from, writer, to, target, {}, shares.stages, stream);
+    stream_rows(filter.rows, reader, from, writer, to, target, {}, shares.stages, console, stream);
     watch.time(stream.write, [&] { writer.finish(); });
-    if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
+    if (stream.lost_non_finite) console.note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
     const double rate = double(in.width) * in.height / 1e6 / std::max(stream.filter, 1e-9);
     if (!o.json) {
-        fmt::print("{}: {}, {:.3g} Mpixel/s\n", filter.rows.verb, filter.line, rate);
+        console.print("{}: {}, {:.3g} Mpixel/s\n", filter.rows.verb, filter.line, rate);
         return;
     }
     nlohmann::ordered_json report{
@@ -121,7 +123,7 @@ void filter_picture(const PictureOptions& o, const std::function<PictureFilter(c
                          {"filter", stream.filter},
                          {"write", stream.write},
                          {"total", watch.total()}};
-    print_json(report);
+    console.print_json(report);
 }
 
 }  // namespace bandlimit::app

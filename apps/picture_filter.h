@@ -18,7 +18,7 @@ void treat_alpha_as_asked(Space space, bool premultiply, int source_alpha, bool 
 
 /// Says how the colours of `file` are taken that has an ICC profile other than sRGB; nothing of others, or where the
 /// user has said what its codes mean.
-void note_foreign_profile(const std::string& file, const ImageInfo& in, Space space);
+void note_foreign_profile(const Console& console, const std::string& file, const ImageInfo& in, Space space);
 
 /// Adds --alpha.
 CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply);
@@ -38,7 +38,7 @@ struct PictureOptions {
 
 /// Adds IN, OUT and the options above but IN and OUT, which come first.
 void add_pictures(CLI::App* verb, PictureOptions& o);
-void add_picture_options(CLI::App* verb, PictureOptions& o);
+void add_picture_options(Program& program, CLI::App* verb, PictureOptions& o);
 /// Throws UsageError for what the command line alone shows to be wrong.
 void check_pictures(const PictureOptions& o);
 
@@ -51,6 +51,7 @@ struct PictureFilter {
 };
 
 /// Reads, filters and writes. `make` sees what is to be filtered.
-void filter_picture(const PictureOptions& o, const std::function<PictureFilter(const ImageInfo& in)>& make);
+void filter_picture(const PictureOptions& o, Console& console,
+                    const std::function<PictureFilter(const ImageInfo& in)>& make);
 
 }  // namespace bandlimit::app

@@ -277,7 +277,7 @@ void check_plot_format(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) check_output_path(path);
     if (!is_svg(path) && !path.ends_with(".png"))
-        fail("plot \"", path, "\" is no kind of file that is drawn; end the name in .svg or .png");
+        fail("plot \"", path, "\" is not a kind of file that can be drawn; end the name in .svg or .png");
 }
 
 void draw(const std::vector<Panel>& panels, const std::string& path, int width, int height) {

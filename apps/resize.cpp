@@ -36,7 +36,7 @@ Rectangle parse_region(const std::string& text) {
     const std::vector<double> n = parse_numbers("--region", text);
     if (n.size() != 4 || n[2] <= 0 || n[3] <= 0)
         throw UsageError(fmt::format(
-            "--region: \"{}\" is no region; write X,Y,WIDTH,HEIGHT in source pixels, as 10,20,300,200", text));
+            "--region: \"{}\" is not a region; write X,Y,WIDTH,HEIGHT in source pixels, as 10,20,300,200", text));
     return {n[0], n[1], n[2], n[3]};
 }
 
@@ -44,7 +44,7 @@ Rectangle parse_region(const std::string& text) {
 std::array<double, 3> parse_background(const std::string& text) {
     const std::string digits = text.starts_with('#') ? text.substr(1) : text;
     if (digits.size() != 6 || digits.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
-        throw UsageError(fmt::format("--background: \"{}\" is no colour; write RRGGBB, as ffffff for white", text));
+        throw UsageError(fmt::format("--background: \"{}\" is not a colour; write RRGGBB, as ffffff for white", text));
     const auto code = [&](std::size_t i) { return std::stoi(digits.substr(2 * i, 2), nullptr, 16) / 255.0; };
     return {code(0), code(1), code(2)};
 }
@@ -198,7 +198,7 @@ nlohmann::ordered_json report_of(const Options& o, const ImageInfo& in, const Im
             {"seconds", {{"read", stream.read}, {"filter", stream.filter}, {"write", stream.write}, {"total", total}}}};
 }
 
-void run(const Options& o) {
+void run(const Options& o, Console& console) {
     check_output_path(o.out);
     Stopwatch watch;
     StreamReport stream;
@@ -213,7 +213,7 @@ void run(const Options& o) {
                    target_axis(region.y, region.height, size.height, o.centers)};
     const Output out = output_of(o, reader, size);
     const Resizer resizer = make_resizer(o, src, dst, in.channels(), options);
-    note_foreign_profile(o.in, in, o.space);
+    note_foreign_profile(console, o.in, in, o.space);
 
     ImageWriter writer(o.out, out.target, shares.codecs.threads);
     Encoding from = in.encoding(o.space), to = writer.encoding();
@@ -222,10 +222,10 @@ void run(const Options& o) {
                            [&](const SourceRows& source, const TargetRows& target, Parallel threads) {
                                return resizer.run(source, target, threads);
                            }};
-    stream_rows(filter, reader, from, writer, to, out.target, out.background, shares.stages, stream);
+    stream_rows(filter, reader, from, writer, to, out.target, out.background, shares.stages, console, stream);
     watch.time(stream.write, [&] { writer.finish(); });
-    if (stream.lost_non_finite) note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
-    if (o.json) print_json(report_of(o, in, out.target, resizer, options, stream, watch.total()));
+    if (stream.lost_non_finite) console.note(fmt::format("{} holds NaN or infinite values; they became 0", o.in));
+    if (o.json) console.print_json(report_of(o, in, out.target, resizer, options, stream, watch.total()));
 }
 
 }  // namespace
@@ -239,10 +239,10 @@ void add_resize(Program& program) {
     verb->add_option("OUT", o->out, "Image to write; the extension names the format")->required();
     verb->add_option("--size", o->size, "New size")->type_name("WxH");
     verb->add_option("--width", o->width, "New width; the height follows unless given")
-        ->check(CLI::Range(1, 2147483647))
+        ->check(in_range(1, 2147483647))
         ->type_name("W");
     verb->add_option("--height", o->height, "New height; the width follows unless given")
-        ->check(CLI::Range(1, 2147483647))
+        ->check(in_range(1, 2147483647))
         ->type_name("H");
     verb->add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3")->type_name("S");
     verb->add_option("--kernel", o->kernel,
@@ -273,9 +273,9 @@ void add_resize(Program& program) {
     add_tiles(verb, o->tile);
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
-    add_quiet(verb);
+    program.add_quiet(verb);
     program.on(
-        verb, [o] { check(*o); }, [o] { run(*o); });
+        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
 }
 
 }  // namespace bandlimit::app

@@ -53,7 +53,7 @@ int largest_band(const RowFilter& filter, int rows, int bands, int target_height
 
 void stream_rows(const RowFilter& filter, ImageReader& reader, const Encoding& from, ImageWriter& writer,
                  const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel,
-                 StreamReport& report) {
+                 const Console& console, StreamReport& report) {
     const ImageInfo& in = reader.info();
     const std::uint64_t source_row = row_bytes(in.width, in.channel_names.size(), in.depth);
     const std::uint64_t target_row = row_bytes(target.width, target.channel_names.size(), target.depth);
@@ -71,7 +71,7 @@ void stream_rows(const RowFilter& filter, ImageReader& reader, const Encoding& f
         return rows_of(view_of(out[static_cast<std::size_t>(i % 2)]), 0, r.end - r.begin);
     };
     Stopwatch watch;
-    Progress progress(filter.verb, target.height);
+    Progress progress(console, filter.verb, target.height);
     const auto read = [&](int i, Parallel) {
         const IndexRange r = band(i, rows, target.height);
         watch.time(report.read, [&] { source.load(i, filter.rows_needed(r.begin, r.end)); });

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/console.h"
 #include "bandlimit/io/image_file.h"
 #include "bandlimit/resample/resize.h"
 
@@ -26,7 +27,8 @@ struct RowFilter {
 };
 
 /// Takes all rows of `reader`, whose codes mean `from`, through `filter` into `writer`, where they shall mean `to`.
-/// While one band is filtered, the next is read and the last one written, unless `parallel` is one thread.
+/// While one band is filtered, the next is read and the last one written, unless `parallel` is one thread. Shows its
+/// progress on `console`.
 ///
 /// memory   two bands of source and two of target rows, each 32 MiB or, if that is more, what filter.least_rows output
 ///          rows take, but at most 192 MiB or what one output row takes; beside them what `filter`, `reader` and
@@ -34,6 +36,6 @@ struct RowFilter {
 /// throws   what `reader`, `filter` or `writer` throw, after all stages stopped
 void stream_rows(const RowFilter& filter, ImageReader& reader, const Encoding& from, ImageWriter& writer,
                  const Encoding& to, const ImageTarget& target, const std::vector<float>& background, Parallel parallel,
-                 StreamReport& report);
+                 const Console& console, StreamReport& report);
 
 }  // namespace bandlimit::app

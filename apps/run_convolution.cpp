@@ -58,11 +58,11 @@ nlohmann::ordered_json report_of(const Convolution& convolution, const ChosenWei
 }
 
 /// What is said once of weights that have no middle sample.
-void note_shift(const ConvolutionWeights& weights) {
+void note_shift(const Console& console, const ConvolutionWeights& weights) {
     const WeightSize size = size_of(weights);
     const double x = weights.first_x + (size.width - 1) / 2.0, y = weights.first_y + (size.height - 1) / 2.0;
     if (x == 0 && y == 0) return;
-    note(
+    console.note(
         fmt::format("the middle of the {} x {} weights lies {:g}, {:g} pixels from the pixel that they make: the "
                     "picture moves by {:g}, {:g}",
                     size.width, size.height, x, y, -x, -y));
@@ -73,7 +73,7 @@ void note_shift(const ConvolutionWeights& weights) {
 void add_choice(CLI::App* verb, ConvolutionChoice& choice) {
     CLI::Option* const rank =
         verb->add_option("--rank", choice.rank, "Run the nearest sum of N products instead: an approximation")
-            ->check(CLI::Range(1, 4096))
+            ->check(in_range(1, 4096))
             ->type_name("N");
     CLI::Option* const exact = verb->add_flag("--exact", choice.is_exact, "Run every weight by itself")->excludes(rank);
     verb->add_flag("--fft", choice.is_fft, "Run by Fourier transforms")->excludes(rank)->excludes(exact);
@@ -110,7 +110,7 @@ WeightGrid read_weights(const std::string& path) {
 }
 
 PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, const ConvolutionChoice& choice,
-                                 const PictureOptions& o, const ImageInfo& in) {
+                                 const PictureOptions& o, const ImageInfo& in, const Console& console) {
     ConvolutionWeights weights = approximated(std::move(chosen.weights), choice.rank, chosen.name);
     const double sum = sum_of(weights);
     const bool cancels = cancel(weights);
@@ -124,7 +124,7 @@ PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, 
         .method = choice.method(), .premultiply = o.premultiplies(), .most_bytes = available_memory()};
     // What sums to 0 has nothing to renormalize to.
     options.edge_x = options.edge_y = o.edge.value_or(cancels ? Edge::reflect : Edge::renormalize);
-    note_shift(weights);
+    note_shift(console, weights);
     const auto convolution = std::make_shared<const Convolution>(weights, in.width, in.height, options);
     PictureFilter filter;
     filter.rows = {verb,

@@ -30,6 +30,6 @@ struct ChosenWeights {
 
 /// The filter that runs them: approximated, normalised, and planned.
 PictureFilter convolution_filter(const std::string& verb, ChosenWeights chosen, const ConvolutionChoice& choice,
-                                 const PictureOptions& o, const ImageInfo& in);
+                                 const PictureOptions& o, const ImageInfo& in, const Console& console);
 
 }  // namespace bandlimit::app

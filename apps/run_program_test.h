@@ -1,4 +1,5 @@
-// How the tests meet the program: from outside, in a folder of their own.
+// How the tests meet the program: as a command line in a folder of their own, which runs in the process of the test or,
+// where the process matters, starts the program.
 #pragma once
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -7,9 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -18,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/program.h"
 #include "bandlimit/core/sanitized_test.h"
 #include "bandlimit/io/files_test.h"
 
@@ -38,13 +44,14 @@ inline std::ostream& operator<<(std::ostream& to, const Outcome& o) {
               << "\", stderr \"" << o.err.substr(0, 3000) << "\"";
 }
 
-/// What is unusual about a run.
+/// What is unusual about a process.
 struct Circumstances {
     std::vector<std::pair<int, rlim_t>> limits = {};  ///< resource and soft limit
-    std::string out_to = {};                          ///< stdout is this file; it must exist
-    bool has_no_stdout = false;                       ///< stdout is closed
+    std::map<int, std::string> streams = {};          ///< standard streams that are this file, or closed if it is ""
     /// Called again and again while the program runs, with its process, until it returns true.
     std::function<bool(pid_t)> meanwhile = {};
+
+    bool are_usual() const { return limits.empty() && streams.empty() && !meanwhile; }
 };
 
 /// The words of a line as a shell takes it apart: by blanks, but not between single quotes.
@@ -66,9 +73,14 @@ class Shell {
 public:
     explicit Shell(std::string program) : program_(std::move(program)) {}
 
-    /// Runs the program with the arguments that the blanks of `line` separate.
+    /// Runs the arguments that the blanks of `line` separate: in this process, if circumstances are usual.
     Outcome operator()(const std::string& line, const Circumstances& c = {}) const { return run(words_of(line), c); }
-    Outcome run(const std::vector<std::string>& arguments, const Circumstances& c = {}) const;
+    Outcome run(const std::vector<std::string>& arguments, const Circumstances& c = {}) const {
+        return c.are_usual() ? run_here(arguments) : start(arguments, c);
+    }
+    /// Starts the program.
+    Outcome start(const std::vector<std::string>& arguments, const Circumstances& c = {}) const;
+    Outcome start(const std::string& line, const Circumstances& c = {}) const { return start(words_of(line), c); }
 
     std::string operator/(const std::string& name) const { return folder_ / name; }
     /// The names of everything in the folder.
@@ -80,18 +92,18 @@ public:
     }
 
 private:
+    Outcome run_here(const std::vector<std::string>& arguments) const;
+
     /// Between fork and exec: nothing that allocates or locks. Does not return.
-    [[noreturn]] void become(char** arguments, const std::string& out, const std::string& err,
+    [[noreturn]] void become(char** arguments, const std::array<const char*, 3>& streams,
                              const Circumstances& c) const {
-        const auto redirect = [](const std::string& path, int to) {
-            const int file = ::open(path.c_str(), O_WRONLY | O_CREAT, 0600);
-            if (file < 0 || ::dup2(file, to) < 0) ::_exit(126);
-        };
-        ::close(STDIN_FILENO);
-        ::open("/dev/null", O_RDONLY);
-        redirect(c.out_to.empty() ? out : c.out_to, STDOUT_FILENO);
-        redirect(err, STDERR_FILENO);
-        if (c.has_no_stdout) ::close(STDOUT_FILENO);
+        for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+            const char* path = streams[static_cast<std::size_t>(stream)];
+            ::close(stream);
+            if (*path == '\0') continue;
+            const int file = ::open(path, stream == STDIN_FILENO ? O_RDONLY : O_WRONLY | O_CREAT, 0600);
+            if (file < 0 || (file != stream && (::dup2(file, stream) < 0 || ::close(file) != 0))) ::_exit(126);
+        }
         if (::chdir(directory_.c_str()) != 0) ::_exit(126);
         for (const auto& [resource, value] : c.limits) {
             rlimit limit{};
@@ -107,11 +119,35 @@ private:
     std::string program_, directory_ = folder_ / ".";
 };
 
-inline Outcome Shell::run(const std::vector<std::string>& arguments, const Circumstances& c) const {
+inline Outcome Shell::run_here(const std::vector<std::string>& arguments) const {
+    std::vector<const char*> words;
+    for (const std::string& argument : arguments) words.push_back(argument.c_str());
+    char *out = nullptr, *err = nullptr;
+    std::size_t out_size = 0, err_size = 0;
+    const app::Streams streams{::open_memstream(&out, &out_size), ::open_memstream(&err, &err_size)};
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(directory_);
+    const auto start = std::chrono::steady_clock::now();
+    Outcome outcome;
+    outcome.code = app::run(words, streams);
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::filesystem::current_path(before);
+    std::fclose(streams.out);
+    std::fclose(streams.err);
+    outcome.out.assign(out, out_size);
+    outcome.err.assign(err, err_size);
+    std::free(out);
+    std::free(err);
+    return outcome;
+}
+
+inline Outcome Shell::start(const std::vector<std::string>& arguments, const Circumstances& c) const {
     constexpr std::chrono::seconds patience(120);
     const std::string out = streams_ / "out", err = streams_ / "err";
     write_bytes(out, "");
     write_bytes(err, "");
+    std::array<const char*, 3> streams{"/dev/null", out.c_str(), err.c_str()};
+    for (const auto& [stream, path] : c.streams) streams[static_cast<std::size_t>(stream)] = path.c_str();
     std::vector<std::string> words{program_};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -121,7 +157,7 @@ inline Outcome Shell::run(const std::vector<std::string>& arguments, const Circu
     const auto start = std::chrono::steady_clock::now();
     const auto elapsed = [&] { return std::chrono::steady_clock::now() - start; };
     const pid_t child = ::fork();
-    if (child == 0) become(pointers.data(), out, err, c);
+    if (child == 0) become(pointers.data(), streams, c);
     int status = 0;
     for (bool is_busy = static_cast<bool>(c.meanwhile); ::waitpid(child, &status, WNOHANG) == 0;) {
         if (is_busy) is_busy = !c.meanwhile(child);

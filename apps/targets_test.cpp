@@ -14,7 +14,7 @@ protected:
 
     Outcome run_with(const std::string& value, const std::string& line) const {
         ::setenv("BANDLIMIT_TARGETS", value.c_str(), 1);
-        return shell_(line);
+        return shell_.start(line);
     }
 
     const Shell shell_{BANDLIMIT_PROGRAM};

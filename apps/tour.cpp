@@ -33,7 +33,7 @@ void write_file(const std::string& path, std::string_view content) {
     file.commit();
 }
 
-void run(const Options& options) {
+void run(const Options& options, Console& console) {
     Tour tour{
         output_directory(options.directory), options.parallel,
         Page(
@@ -52,15 +52,15 @@ void run(const Options& options) {
                      784);
     using Part = void (*)(Tour&);
     const Part parts[] = {tour_lanczos, tour_grids, tour_splines, tour_images, tour_mips, tour_design, tour_audit};
-    Progress progress("tour", std::size(parts));
+    Progress progress(console, "tour", std::size(parts));
     for (std::size_t i = 0; i < std::size(parts); ++i) {
         parts[i](tour);
         progress.advance_to(static_cast<double>(i + 1));
     }
     const std::string page = tour.path("index.html");
     write_file(page, tour.page.html());
-    fmt::print("{}\n", std::filesystem::absolute(page).lexically_normal().string());
-    for (const Page::Headline& h : tour.page.headlines()) fmt::print("  {:<78} {}\n", h.what, h.value);
+    console.print("{}\n", std::filesystem::absolute(page).lexically_normal().string());
+    for (const Page::Headline& h : tour.page.headlines()) console.print("  {:<78} {}\n", h.what, h.value);
 }
 
 }  // namespace
@@ -72,9 +72,9 @@ void add_tour(Program& program) {
                          "bandlimit tour out");
     verb->add_option("DIR", options->directory, "Directory to write index.html and its pictures to")->required();
     add_threads(verb, options->parallel);
-    add_quiet(verb);
+    program.add_quiet(verb);
     program.on(
-        verb, [] {}, [options] { run(*options); });
+        verb, [] {}, [options](Console& console) { run(*options, console); });
 }
 
 }  // namespace bandlimit::app

@@ -55,8 +55,10 @@ json parse(std::string_view text, const std::string& name) {
     };
     try {
         return json::parse(text, limit_depth);
-    } catch (const json::exception& e) {
-        fail_file(name, "is no JSON: ", e.what(), "; name a taps.json");
+    } catch (const json::parse_error& e) {
+        fail_file(name, "is not JSON from byte ", e.byte, " on; mend it there, or name a taps.json");
+    } catch (const json::exception&) {
+        fail_file(name, "holds a number that no computer number can hold; correct it");
     }
 }
 
