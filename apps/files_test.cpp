@@ -113,10 +113,11 @@ TEST(Files, WeightsWithoutSenseTakeLittleMemoryOrAreRefused) {
     };
     write("taps.json", {{"taps", {{"first", 0}, {"weights", long_row}}}});
     write("terms.json", {{"terms", json::array({{{"column", long_row}, {"row", long_row}}})}});
-    const Circumstances limited{.limits = {{RLIMIT_AS, rlim_t{1} << 30}}};
+    Circumstances limited;
+    if (!is_sanitized) limited.limits = {{RLIMIT_AS, rlim_t{1} << 30}};  // a sanitizer maps terabytes for itself
     for (const std::string line :
-         {"convolve in.png out.png --taps taps.json --threads 1",
-          "convolve in.png out.png --taps terms.json --threads 1",
+         {"convolve in.png out.png --taps taps.json --edge reflect --threads 1",
+          "convolve in.png out.png --taps terms.json --edge reflect --threads 1",
           "resize in.png out.png --size 40x30 --kernel taps.json --threads 1", "analyze taps.json"})
         EXPECT_EQ(shell(line, limited).code, 0) << line;
     EXPECT_TRUE(fails(1, shell("analyze terms.json", limited), "12000 x 12000"));
@@ -154,15 +155,15 @@ TEST(Files, AuditedCommandsGetPathsThatNoShellTakesApart) {
     fs::create_directory(place);
     ::setenv("TMPDIR", place.c_str(), 1);
     for (const std::string names : {"{in} {out}", "\"{in}\" '{out}'", "'{in}' \"{out}\""}) {
-        const Outcome run = shell.run(
+        const Outcome run = shell.start(
             {"audit", "bandlimit resize " + names + " --size \"{width}x{height}\"", "--scales", "2", "--grey"});
         EXPECT_TRUE(succeeds(run)) << names;
     }
     EXPECT_TRUE(fs::is_empty(place));
     ::unsetenv("TMPDIR");
     fs::create_directory(shell / "$(kill -9 $PPID)");
-    EXPECT_TRUE(succeeds(shell.run({"audit", "bandlimit resize \"{in}\" \"{out}\" --size {width}x{height}", "--scales",
-                                    "2", "--grey", "--keep", "$(kill -9 $PPID)"})));
+    EXPECT_TRUE(succeeds(shell.start({"audit", "bandlimit resize \"{in}\" \"{out}\" --size {width}x{height}",
+                                      "--scales", "2", "--grey", "--keep", "$(kill -9 $PPID)"})));
     EXPECT_TRUE(fs::exists(shell / "$(kill -9 $PPID)/01-out.png"));
     EXPECT_TRUE(fails(2, shell("audit 'x {in} {width} -o {out}.png'"), "--format"));
 }

@@ -27,7 +27,9 @@ namespace {
 
 using namespace bandlimit;
 
-std::FILE* err = stderr;  ///< the real one, also for those that cannot be given it
+std::FILE* real_stderr = nullptr;  ///< for those that cannot be given it; none yet: stderr is it
+
+std::FILE* err() { return real_stderr ? real_stderr : stderr; }
 
 extern "C" void stop(int signal_number) {
     app::abandon_commands();
@@ -59,14 +61,14 @@ void keep_no_freed_memory() {
 #endif
 }
 
-/// Routes what codecs print by themselves to nowhere, and keeps the real stderr as `err`.
+/// Routes what codecs print by themselves to nowhere, and keeps the real stderr as err().
 void silence_codecs() {
 #ifndef REPORTS_OF_SANITIZERS  // which go to the same place
     const int kept = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
     std::FILE* const real = kept < 0 ? nullptr : fdopen(kept, "w");
     if (!real) return;
     std::setvbuf(real, nullptr, _IONBF, 0);
-    err = real;
+    real_stderr = real;
     if (const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) {
         dup2(nowhere, STDERR_FILENO);
         close(nowhere);
@@ -74,18 +76,26 @@ void silence_codecs() {
 #endif
 }
 
-/// Where memory runs out and nothing may be thrown, as in a thread of a library. All else is a mistake in the program.
+/// Where memory runs out and nothing may be thrown, as in a thread or an initialiser of a library. All else is a
+/// mistake in the program.
 [[noreturn]] void give_up() noexcept {
     try {
         if (std::current_exception()) std::rethrow_exception(std::current_exception());
     } catch (const std::bad_alloc&) {
-        app::Console({stdout, err}).error("memory is exhausted; use a smaller size, or close other programs");
+        app::Console({stdout, err()}).error("memory is exhausted; use a smaller size, or close other programs");
         remove_unfinished_files();
         _exit(1);
     } catch (...) {
     }
     std::abort();
 }
+
+extern "C" void end_without_memory_in_words() { std::set_terminate(give_up); }
+
+#if defined(__GLIBC__) && !defined(REPORTS_OF_SANITIZERS)
+// What runs first of all: memory may run out in the initialisers of libraries too, long before main().
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = end_without_memory_in_words;
+#endif
 
 }  // namespace
 
@@ -94,7 +104,7 @@ int main(int argc, char** argv) {
     reserve_standard_streams();
     handle_signals();
     silence_codecs();
-    std::set_terminate(give_up);
+    end_without_memory_in_words();
     const std::size_t count = argc > 0 ? static_cast<std::size_t>(argc - 1) : 0;
-    return app::run({argv + argc - count, count}, {stdout, err});
+    return app::run({argv + argc - count, count}, {stdout, err()});
 }

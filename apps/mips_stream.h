@@ -16,8 +16,8 @@ struct MipsStreamReport {
 };
 
 /// Makes the levels of the picture in `reader`, whose codes mean `stored`, where MipStream::is_possible(), and writes
-/// them to `path` as `container`, an array of one layer or none, with a progress bar on `console` if there is one. While
-/// rows are filtered, the next are read, unless `parallel` is one thread.
+/// them to `path` as `container`, an array of one layer or none, with a progress bar on `console` if there is one.
+/// While rows are filtered, the next are read, unless `parallel` is one thread.
 ///
 /// memory   some 500 rows of the picture and 200 of each level as floats: 200 MB where it is 65536 texels wide; all
 ///          rows of all levels under Edge::wrap along y

@@ -256,7 +256,7 @@ endfunction()
 # replays these and goes on from there for ten seconds, from the same random seed every time.
 function(bandlimit_fuzzers)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-        message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset fuzz")
+        message(FATAL_ERROR "BANDLIMIT_FUZZ needs Clang; use the preset clang")
     endif()
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
     foreach(source IN LISTS sources)

@@ -28,7 +28,8 @@ void* load_module() {
         const fs::path path = folder / name;
         if (!fs::exists(path, error)) continue;
         if (void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL)) return module;
-        throw std::runtime_error(message("image files: ", ::dlerror(), "; install OpenImageIO, or bandlimit again"));
+        throw std::runtime_error(message("image files need ", path.string(), ", which cannot be loaded (", ::dlerror(),
+                                         "); free memory, or install OpenImageIO and bandlimit again"));
     }
     throw std::runtime_error(message("image files need ", name, ", which is in neither ", folders[0].string(), " nor ",
                                      folders[1].string(), "; install bandlimit again"));

@@ -146,14 +146,17 @@ std::vector<double> LeastSquares::solve() const {
     const Vector b = vector_of(squares_.values) - squares * origin;
     const bool all_is_decided = a.norm() <= 1e-14 * squares.norm();  // what is left is rounding
     if (limits_.values.empty() && all_is_decided) return result(origin);
+    const auto fail_free = [] {
+        fail("LeastSquares: limits on unknowns that the rows leave free; add a row for each");
+    };
+    if (a.rows() == 0) fail_free();
     const Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(a);
     const Vector best = decomposition.solve(b);
     const auto limits = matrix_of(limits_.coefficients, unknowns_);
     if (limits.rows() == 0) return result(origin + directions * best);
 
     // With a = q r the rows ask for a short y = r (z - best).
-    if (decomposition.rank() < a.cols())
-        fail("LeastSquares: limits on unknowns that the rows leave free; add a row for each");
+    if (decomposition.rank() < a.cols()) fail_free();
     const Eigen::HouseholderQR<Matrix> qr(a);
     const Matrix r = qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
     const Matrix slopes = limits * directions;

@@ -109,9 +109,9 @@ Library::Library(Dialect dialect, const std::string& functions, const std::vecto
     const std::string before = dialect == Dialect::msl ? "" : types;
     write_text(folder_ / "library.cpp", before + functions + evaluation(dialect, calls));
     const std::string library = (folder_ / "library.so").string();
-    run_command(std::string(BANDLIMIT_CXX) + " -O0 -shared -fPIC -Wall -Wextra -Wconversion -Wno-attributes -Werror " +
-                (dialect == Dialect::msl ? "-std=c++17 -Wno-unused" : "-std=c++20") + " -I " + (folder_ / "").string() +
-                " -o " + library + " " + (folder_ / "library.cpp").string());
+    run_command(message(BANDLIMIT_CXX " -O0 -shared -fPIC -Wall -Wextra -Wconversion -Wno-attributes -Werror ",
+                        dialect == Dialect::msl ? "-std=c++17 -Wno-unused" : "-std=c++20", " -I ",
+                        (folder_ / "").string(), " -o ", library, " ", (folder_ / "library.cpp").string()));
     void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw std::runtime_error(dlerror());
     evaluate_ = reinterpret_cast<decltype(evaluate_)>(dlsym(handle, "evaluate"));

@@ -5,7 +5,7 @@ set(prefix ${BUILD}/consumer/program)
 file(REMOVE_RECURSE ${prefix})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --component program --prefix ${prefix}
     COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
-file(GLOB program ${prefix}/*/bandlimit)
+file(GLOB program ${prefix}/bin/bandlimit)
 file(GLOB_RECURSE module ${prefix}/*/bandlimit_oiio.so)
 
 execute_process(COMMAND ldd ${program} OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)

@@ -61,7 +61,7 @@ std::string one_line(std::string_view text) {
         else if (c == '\n' && !line.empty() && line.back() != ' ') line += ", ";
     }
     while (!line.empty() && (line.back() == ' ' || line.back() == ',' || line.back() == '.')) line.pop_back();
-    return line.empty() ? "unknown reason" : line;
+    return line.empty() ? "the codec gives no reason" : line;
 }
 
 }  // namespace bandlimit::oiio

@@ -20,7 +20,7 @@ public:
     PoolShare& operator=(const PoolShare&) = delete;
 };
 
-/// An error text of a codec as part of one line; "unknown reason" for an empty one.
+/// An error text of a codec as part of one line; "the codec gives no reason" for an empty one.
 std::string one_line(std::string_view text);
 
 /// The bytes of an ICC profile among the attributes of a file, or nothing.

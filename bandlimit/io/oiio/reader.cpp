@@ -133,10 +133,17 @@ Parts Reader::count_parts() {
 template <class T>
 bool Reader::read_scanlines(int y, const View<T>& to) {
     const auto size = static_cast<OIIO::stride_t>(sizeof(T));
-    const auto row_bytes = to.height > 1 ? size * to.dy : size * to.dx * to.width;
-    if (!input_->read_scanlines(0, 0, spec_.y + y, spec_.y + y + to.height, spec_.z, 0, spec_.nchannels,
-                                type_of(info_.depth), to.data, size * to.dx, row_bytes))
-        return false;
+    const int first = spec_.y + y, end = first + to.height;
+    const OIIO::TypeDesc type = type_of(info_.depth);
+    const bool has_gaps = to.height > 1 && to.dy != to.dx * to.width;
+    // What needs no conversion goes straight to its place. OpenImageIO would read it into 64 MB that it takes at every
+    // call, and copy it.
+    const bool is_native = spec_.format == type && spec_.channelformats.empty() && !has_gaps;
+    const bool is_read =
+        is_native ? input_->read_native_scanlines(0, 0, first, end, spec_.z, to.data)
+                  : input_->read_scanlines(0, 0, first, end, spec_.z, 0, spec_.nchannels, type, to.data, size * to.dx,
+                                           to.height > 1 ? size * to.dy : size * to.dx * to.width);
+    if (!is_read) return false;
     if constexpr (std::is_same_v<T, std::uint8_t>)
         if (format_ == "webp" && spec_.nchannels == 4)
             for (int row = 0; row < to.height; ++row)

@@ -104,7 +104,7 @@ OIIO::ImageSpec spec_of(const ImageTarget& target, const FormatAbilities& format
         spec.attribute("jpeg:subsampling", "4:4:4");
     }
     if (format.name == "tiff" || format.name == "openexr") spec.attribute("compression", "zip");
-    // What OpenImageIO compresses in parallel has other bytes than what libtiff does, which is three times as fast.
+    // What OpenImageIO compresses in parallel has other bytes than what libtiff does.
     if (format.name == "tiff") spec.attribute("tiff:multithread", 0);
     return spec;
 }
@@ -139,7 +139,7 @@ private:
     template <class T>
     bool write_scanlines(int y, const View<const T>& rows);
     template <class T>
-    bool write_tiles(int y, const View<const T>& rows);
+    bool write_tiles(int y, const View<const T>& whole);
 
     const Destination file_;
     ImageTarget target_;
@@ -195,7 +195,10 @@ bool Writer::write_scanlines(int y, const View<const T>& rows) {
 
 /// Writes a row of tiles, some tiles at a time.
 template <class T>
-bool Writer::write_tiles(int y, const View<const T>& rows) {
+bool Writer::write_tiles(int y, const View<const T>& whole) {
+    // OpenEXR stores no part of a tile that is beyond the picture, and OpenImageIO takes none.
+    const View<const T> rows =
+        is_tiff_ ? whole : cropped(whole, 0, 0, target_.width, std::min(whole.height, target_.height - y));
     const auto size = static_cast<OIIO::stride_t>(sizeof(T));
     const int columns = tile_columns_at_once(output_->spec());
     for (int x = 0, end = 0; x < rows.width; x = end) {
