@@ -1,9 +1,11 @@
 #include "bandlimit/io/codecs.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <array>
 #include <filesystem>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
@@ -18,8 +20,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Throws std::bad_alloc unless there is room for `bytes` more of memory with this protection.
+void require_room(std::size_t bytes, int protection) {
+    void* const place = ::mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (place == MAP_FAILED) throw std::bad_alloc();
+    ::munmap(place, bytes);
+}
+
 /// The module, which stays loaded.
 void* load_module() {
+    // Some of its libraries crash where they lack memory while they are initialised: they take 340 MB of addresses
+    // and 40 of data.
+    require_room(std::size_t{512} << 20, PROT_NONE);
+    require_room(std::size_t{96} << 20, PROT_READ | PROT_WRITE);
     constexpr const char* name = "bandlimit_oiio.so";
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
