@@ -6,6 +6,7 @@
 #include <cmath>
 #include <variant>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "apps/emit.h"
 #include "apps/plot.h"
@@ -464,35 +465,34 @@ void run(const Options& o, Console& console, const std::string& command) {
 
 void add_analyze(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("analyze", "See what a kernel or taps do: weights, responses, variance, spectrum",
-                                      "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --plot bspline.svg");
-    verb->add_option("KERNEL", o->kernel, "A kernel (analyze --list shows them), or a file that ends in .json");
-    verb->add_flag("--list", o->list, "List the kernels with a line each");
-    verb->add_option("--at", o->at,
-                     "Positions to print the kernel's value at, between commas; default 0,0.5,... radius")
-        ->type_name("X,...");
-    verb->add_option(
+    Verb verb = program.add_verb("analyze", "See what a kernel or taps do: weights, responses, variance, spectrum",
+                                 "bandlimit analyze bspline --phase 0,1/6,1/3,1/2 --plot bspline.svg");
+    verb.add_option("KERNEL", o->kernel, "A kernel (analyze --list shows them), or a file that ends in .json");
+    verb.add_flag("--list", o->list, "List the kernels with a line each");
+    verb.add_option("--at", o->at, "Positions to print the kernel's value at, between commas; default 0,0.5,... radius")
+        .type_name("X,...");
+    verb.add_option(
             "--phase", o->phase,
             "Where the output lies, right of source sample 0, in [0, 1); default 0,1/4,1/2,3/4. Weights are\n"
             "normalised to sum 1; \"first\" and \"centroid\" count from source sample 0. Of a radial kernel the\n"
             "output lies on the row of sample 0, and weights have rows")
-        ->type_name("P,...");
-    verb->add_option("--frequency", o->frequency,
-                     "Frequencies of responses, in cycles per source sample; default 0,1/8,1/4,3/8,1/2. Responses are\n"
-                     "relative to the output's position; those of radial kernels along x")
-        ->type_name("F,...");
-    verb->add_option("--from", o->from, "Print rows of the bank that takes N samples ...")
-        ->check(in_range(1, 1 << 24))
-        ->type_name("N");
-    verb->add_option("--to", o->to, "... to M, with renormalized edges")->check(in_range(1, 1 << 24))->type_name("M");
-    verb->add_option("--rows", o->rows, "Which outputs; default all")->type_name("I,...");
-    verb->add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
-        ->type_name("OUT");
-    verb->add_option_function<std::string>(
+        .type_name("P,...");
+    verb.add_option("--frequency", o->frequency,
+                    "Frequencies of responses, in cycles per source sample; default 0,1/8,1/4,3/8,1/2. Responses are\n"
+                    "relative to the output's position; those of radial kernels along x")
+        .type_name("F,...");
+    verb.add_option("--from", o->from, "Print rows of the bank that takes N samples ...")
+        .in_range(1, 1 << 24)
+        .type_name("N");
+    verb.add_option("--to", o->to, "... to M, with renormalized edges").in_range(1, 1 << 24).type_name("M");
+    verb.add_option("--rows", o->rows, "Which outputs; default all").type_name("I,...");
+    verb.add_option("--plot", o->plot, "Draw kernel, responses at the phases and variance over phase, as .svg or .png")
+        .type_name("OUT");
+    verb.add_option_function<std::string>(
             "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
             "Print shader source instead: functions that read a texture with the kernel, or one of them by its\n"
             "name, as sample_catmull_rom_5; srgb for the curve; of a taps.json its first shader")
-        ->type_name("glsl|hlsl|wgsl|msl|slang|cpp");
+        .type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     add_json(verb, o->json);
     program.on(
         verb, [o] { check(*o); }, [o, &program](Console& console) { run(*o, console, program.command); });

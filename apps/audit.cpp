@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
 #include "apps/audit_report.h"
 #include "apps/command.h"
 #include "apps/common.h"
@@ -230,28 +231,28 @@ void run(const Options& o, Console& console) {
 
 void add_audit(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb(
+    Verb verb = program.add_verb(
         "audit", "Find out what another program really does when it resizes: kernel, shift, light, alpha, borders",
         "bandlimit audit 'bandlimit resize {in} {out} --size {width}x{height}' --scales 1/2\n"
         "Others:\n"
         "  bandlimit audit 'convert {in} -resize {width}x{height}! {out}'\n"
         "  bandlimit audit 'vips resize {in} {out} {scale}' --depth u16 --html vips");
-    verb->add_option(
+    verb.add_option(
             "COMMAND", o->command,
             "One line for /bin/sh, run in a temporary folder, where {in}, {out}, {width}, {height} and {scale}\n"
             "are replaced, in quotes or not: it must read the picture {in} and write it at the new size to {out}")
-        ->required();
-    verb->add_option("--scales", o->scales,
-                     "Scales to test, between commas: ratios of numbers up to 128, from 1/8 to 8;\n"
-                     "default 1/2,37/100,2,100/37")
-        ->type_name("S,...");
-    verb->add_option("--format", o->format, "Extension of the files; default png")->type_name("png|tif|pfm|...");
+        .required();
+    verb.add_option("--scales", o->scales,
+                    "Scales to test, between commas: ratios of numbers up to 128, from 1/8 to 8;\n"
+                    "default 1/2,37/100,2,100/37")
+        .type_name("S,...");
+    verb.add_option("--format", o->format, "Extension of the files; default png").type_name("png|tif|pfm|...");
     add_depth(verb, o->depth)
-        ->description("Depth of the files; default u8. u16 shows kernels more finely, f32 clipping");
-    verb->add_flag("--grey", o->grey, "Files of one channel instead of RGB; alpha is not tested then");
-    verb->add_option("--timeout", o->timeout, "Seconds that a run may take; default 30")->type_name("SECONDS");
-    verb->add_option("--keep", o->keep, "Keep all files that are read and written in this folder")->type_name("DIR");
-    verb->add_option("--html", o->html, "Write a page with plots and pictures to this folder")->type_name("DIR");
+        .description("Depth of the files; default u8. u16 shows kernels more finely, f32 clipping");
+    verb.add_flag("--grey", o->grey, "Files of one channel instead of RGB; alpha is not tested then");
+    verb.add_option("--timeout", o->timeout, "Seconds that a run may take; default 30").type_name("SECONDS");
+    verb.add_option("--keep", o->keep, "Keep all files that are read and written in this folder").type_name("DIR");
+    verb.add_option("--html", o->html, "Write a page with plots and pictures to this folder").type_name("DIR");
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
     program.add_quiet(verb);

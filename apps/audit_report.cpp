@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include <nlohmann/json.hpp>
 #include "apps/console.h"
 
 namespace bandlimit::app {

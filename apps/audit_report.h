@@ -1,6 +1,6 @@
 // What an audit says: findings in words, and JSON.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

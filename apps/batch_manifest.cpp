@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
 #include "bandlimit/io/regular_file.h"

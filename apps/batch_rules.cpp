@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/regular_file.h"

@@ -96,26 +96,26 @@ std::string shapes() {
 
 void add_bokeh(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb =
+    Verb verb =
         program.add_verb("bokeh", "Blur an image as a lens does: every light becomes a picture of the aperture",
                          "bandlimit bokeh examples/coffee.png bokeh.png --shape polygon:6:0.9:15 --radius 12 --hdr 7");
     add_pictures(verb, o->pictures);
-    verb->add_option("--shape", o->shape,
-                     "Aperture: disc (default), an image file, or a shape where 1 is the radius:\n" + shapes())
-        ->type_name("SHAPE|FILE");
-    verb->add_option("--radius", o->radius, "Radius in pixels, fractions allowed")->required()->type_name("PX");
-    verb->add_option("--hdr", o->gamma,
-                     "Raise linear light to this power before, and undo it after: lights that the picture has at\n"
-                     "white become as bright as they were, as with 7")
-        ->type_name("GAMMA");
+    verb.add_option("--shape", o->shape,
+                    "Aperture: disc (default), an image file, or a shape where 1 is the radius:\n" + shapes())
+        .type_name("SHAPE|FILE");
+    verb.add_option("--radius", o->radius, "Radius in pixels, fractions allowed").required().type_name("PX");
+    verb.add_option("--hdr", o->gamma,
+                    "Raise linear light to this power before, and undo it after: lights that the picture has at\n"
+                    "white become as bright as they were, as with 7")
+        .type_name("GAMMA");
     add_choice(verb, o->choice);
-    verb->add_option("--components", o->components,
-                     "Run this many complex phasors fitted to the disc instead: an approximation")
-        ->check(in_range(1, most_disk_components))
-        ->excludes("--rank")
-        ->excludes("--exact")
-        ->excludes("--fft")
-        ->type_name("N");
+    verb.add_option("--components", o->components,
+                    "Run this many complex phasors fitted to the disc instead: an approximation")
+        .in_range(1, most_disk_components)
+        .excludes(verb.option("--rank"))
+        .excludes(verb.option("--exact"))
+        .excludes(verb.option("--fft"))
+        .type_name("N");
     add_picture_options(program, verb, o->pictures);
     program.on(
         verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });

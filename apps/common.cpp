@@ -7,83 +7,69 @@
 #include <filesystem>
 
 namespace bandlimit::app {
-CLI::App* Program::add_verb(const std::string& name, const std::string& summary, const std::string& example) {
-    CLI::App* verb = cli.add_subcommand(name, summary);
-    verb->footer("Example:\n  " + example);
+
+Verb Program::add_verb(const std::string& name, const std::string& summary, const std::string& example) {
+    const Verb verb = command_line.program().add_subcommand(name, summary);
+    verb.example(example);
     return verb;
 }
 
-void Program::on(CLI::App* verb, std::function<void()> check, std::function<void(Console&)> run) {
-    verb->callback([this, check = std::move(check), run = std::move(run)] {
+void Program::on(Verb verb, std::function<void()> check, std::function<void(Console&)> run) {
+    verb.on([this, check = std::move(check), run = std::move(run)] {
         check();
         selected = [this, run] { run(console); };
     });
 }
 
-void Program::add_quiet(CLI::App* verb) { verb->add_flag("--quiet", console.quiet, "No notes, no progress bar"); }
+void Program::add_quiet(Verb verb) { verb.add_flag("--quiet", console.quiet, "No notes, no progress bar"); }
 
-void require_one_subcommand(CLI::App& app, const std::string& noun) {
-    app.require_subcommand(0, 1);
-    app.allow_extras();
-    app.callback([&app, noun] {
-        const std::vector<std::string> words = app.remaining();
-        if (words.empty() && !app.get_subcommands().empty()) return;
-        std::string names;
-        for (const CLI::App* command : app.get_subcommands({}))
-            names += (names.empty() ? "" : ", ") + command->get_name();
-        const std::string what = words.empty() ? fmt::format("a {} is missing", noun)
-                                               : fmt::format("\"{}\" is not a {}", words.front(), noun);
-        throw UsageError(fmt::format("{}; choose one of: {}", what, names));
-    });
-}
-
-CLI::Option* add_space(CLI::App* verb, Space& space) {
+Option add_space(Verb verb, Space& space) {
     return verb
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             "--space", [&space](const std::string& s) { space = parse_space(s); },
             "What the file's codes mean: auto (8 and 16 bit: sRGB, float: linear, unless the file says\n"
             "otherwise), srgb, linear, or data (never decoded: normals, masks, heights)")
-        ->type_name("auto|srgb|linear|data");
+        .type_name("auto|srgb|linear|data");
 }
 
-CLI::Option* add_depth(CLI::App* verb, std::optional<Depth>& depth) {
+Option add_depth(Verb verb, std::optional<Depth>& depth) {
     return verb
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             "--depth", [&depth](const std::string& s) { depth = parse_depth(s); },
             "Depth of the output; default: that of the input, or the nearest the format holds")
-        ->type_name("u8|u16|f16|f32");
+        .type_name("u8|u16|f16|f32");
 }
 
-CLI::Option* add_edge(CLI::App* verb, std::optional<Edge>& edge) {
+Option add_edge(Verb verb, std::optional<Edge>& edge) {
     return verb
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             "--edge", [&edge](const std::string& s) { edge = parse_edge(s); },
             "What lies outside the image; reflect repeats the border sample, renormalize (the default)\n"
             "leaves it out and rescales the other weights")
-        ->type_name("clamp|reflect|wrap|zero|renormalize");
+        .type_name("clamp|reflect|wrap|zero|renormalize");
 }
 
-CLI::Option* add_tiles(CLI::App* verb, int& tile) {
+Option add_tiles(Verb verb, int& tile) {
     return verb
-        ->add_option("--tiles", tile,
-                     "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
-                     "default: rows")
-        ->check(in_range(1, 4096))
-        ->type_name("N");
+        .add_option("--tiles", tile,
+                    "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
+                    "default: rows")
+        .in_range(1, 4096)
+        .type_name("N");
 }
 
-CLI::Option* add_threads(CLI::App* verb, Parallel& parallel) {
+Option add_threads(Verb verb, Parallel& parallel) {
     return verb
-        ->add_option(
+        .add_option(
             "--threads", parallel.threads,
             "Most threads to keep busy; 0 (default): one per core; 1: reading, filtering and writing take turns\n"
             "instead of overlapping")
-        ->check(in_range(0, 1024))
-        ->type_name("N");
+        .in_range(0, 1024)
+        .type_name("N");
 }
 
-CLI::Option* add_json(CLI::App* verb, bool& json) {
-    return verb->add_flag("--json", json, "Print a report as JSON on stdout, and nothing else there");
+Option add_json(Verb verb, bool& json) {
+    return verb.add_flag("--json", json, "Print a report as JSON on stdout, and nothing else there");
 }
 
 Shares shares_of(Parallel parallel) {

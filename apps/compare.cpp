@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "bandlimit/analysis/metrics.h"
 #include "bandlimit/analysis/shift.h"
@@ -282,16 +283,16 @@ void run(const Options& o, Console& console) {
 
 void add_compare(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("compare", "Measure how far two images are apart: MSE, PSNR, SSIM, shift",
-                                      "bandlimit compare examples/coffee.png examples/coffee.png");
-    verb->add_option("A", o->a, "The first image")->required();
-    verb->add_option("B", o->b, "The second image; a shift above 0 means that its content lies right of or below A's")
-        ->required();
-    verb->add_option("--border", o->border, "Pixels to leave out on every side; default 0")
-        ->check(in_range(0, 1 << 30))
-        ->type_name("N");
+    Verb verb = program.add_verb("compare", "Measure how far two images are apart: MSE, PSNR, SSIM, shift",
+                                 "bandlimit compare examples/coffee.png examples/coffee.png");
+    verb.add_option("A", o->a, "The first image").required();
+    verb.add_option("B", o->b, "The second image; a shift above 0 means that its content lies right of or below A's")
+        .required();
+    verb.add_option("--border", o->border, "Pixels to leave out on every side; default 0")
+        .in_range(0, 1 << 30)
+        .type_name("N");
     add_space(verb, o->space);
-    verb->add_option_function<std::string>(
+    verb.add_option_function<std::string>(
             "--measure",
             [o](const std::string& s) {
                 if (s != "encoded" && s != "linear")
@@ -300,11 +301,11 @@ void add_compare(Program& program) {
             },
             "What to compare: codes, divided by the largest (default where both files hold integers;\n"
             "linear floats are sRGB-encoded for it), or linear light (default for float files)")
-        ->type_name("encoded|linear");
-    verb->add_option("--diff", o->diff,
-                     "Write |A - B| of the measured values, without alpha, to an image of linear codes,\n"
-                     "to be read with --space data")
-        ->type_name("OUT");
+        .type_name("encoded|linear");
+    verb.add_option("--diff", o->diff,
+                    "Write |A - B| of the measured values, without alpha, to an image of linear codes,\n"
+                    "to be read with --space data")
+        .type_name("OUT");
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
     program.add_quiet(verb);

@@ -100,21 +100,21 @@ void run(const Options& o, Console& console) {
 
 void add_convolve(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("convolve", "Run designed filters, or any weights, on an image",
-                                      "bandlimit convolve examples/coffee.png soft.png --taps examples/binomial.json");
+    Verb verb = program.add_verb("convolve", "Run designed filters, or any weights, on an image",
+                                 "bandlimit convolve examples/coffee.png soft.png --taps examples/binomial.json");
     add_pictures(verb, o->pictures);
-    verb->add_option("--taps", o->taps,
-                     "Weights of a taps.json, as bandlimit design writes it: along both axes for taps")
-        ->type_name("FILE");
-    verb->add_option("--image", o->image,
-                     "Weights of an image, centred: the mean of its colours times alpha, as codes have it.\n"
-                     "Each output is the sum of what the weights lie over (correlation, as taps have it): a spot\n"
-                     "becomes the image turned by half a turn")
-        ->type_name("KERNEL");
-    verb->add_option("--axis", o->axis, "Axis for taps of one axis (default both)")->type_name("x|y|both");
-    verb->add_option("--radius", o->radius, "Radius in pixels, for components of a taps.json")
-        ->check(in_range(0.5, 1000.0))
-        ->type_name("PX");
+    verb.add_option("--taps", o->taps,
+                    "Weights of a taps.json, as bandlimit design writes it: along both axes for taps")
+        .type_name("FILE");
+    verb.add_option("--image", o->image,
+                    "Weights of an image, centred: the mean of its colours times alpha, as codes have it.\n"
+                    "Each output is the sum of what the weights lie over (correlation, as taps have it): a spot\n"
+                    "becomes the image turned by half a turn")
+        .type_name("KERNEL");
+    verb.add_option("--axis", o->axis, "Axis for taps of one axis (default both)").type_name("x|y|both");
+    verb.add_option("--radius", o->radius, "Radius in pixels, for components of a taps.json")
+        .in_range(0.5, 1000.0)
+        .type_name("PX");
     add_choice(verb, o->choice);
     add_picture_options(program, verb, o->pictures);
     program.on(

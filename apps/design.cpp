@@ -83,25 +83,24 @@ void run(const Options& o, Console& console, const std::string& command, const s
 
 }  // namespace
 
-CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
-                          const std::string& example, std::function<void()> check,
-                          std::function<Design(Console&)> make) {
+Verb add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
+                     const std::string& example, std::function<void()> check, std::function<Design(Console&)> make) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = verb.cli->add_subcommand(name, summary);
-    app->footer("Example:\n  " + example);
-    app->add_option("-o,--output", o->output,
-                    "Write the design as taps.json, which resize, mips, convolve and analyze read")
-        ->type_name("FILE.json");
-    app->add_option("--plot", o->plot, "Draw weights and responses, as .svg or .png")->type_name("OUT");
-    app->add_option("--size", o->size, "Picture that costs are told for; default 1920x1080")->type_name("WxH");
-    app->add_flag("--json", o->json, "Print the taps.json on stdout, and nothing else there");
-    app->add_option_function<std::string>(
+    Verb app = verb.cli.add_subcommand(name, summary);
+    app.example(example);
+    app.add_option("-o,--output", o->output,
+                   "Write the design as taps.json, which resize, mips, convolve and analyze read")
+        .type_name("FILE.json");
+    app.add_option("--plot", o->plot, "Draw weights and responses, as .svg or .png").type_name("OUT");
+    app.add_option("--size", o->size, "Picture that costs are told for; default 1920x1080").type_name("WxH");
+    app.add_flag("--json", o->json, "Print the taps.json on stdout, and nothing else there");
+    app.add_option_function<std::string>(
            "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
            "Print shader source that runs the design, instead of the report")
-        ->type_name("glsl|hlsl|wgsl|msl|slang|cpp");
-    app->add_option("--emit-to", o->emit_to, "Write all its shaders, in all dialects or that of --emit, to a directory")
-        ->type_name("DIR");
-    app->add_option("--name", o->name, "What its functions are called; default: the kind of design")->type_name("NAME");
+        .type_name("glsl|hlsl|wgsl|msl|slang|cpp");
+    app.add_option("--emit-to", o->emit_to, "Write all its shaders, in all dialects or that of --emit, to a directory")
+        .type_name("DIR");
+    app.add_option("--name", o->name, "What its functions are called; default: the kind of design").type_name("NAME");
     verb.program.add_quiet(app);
     verb.program.on(
         app,
@@ -116,8 +115,8 @@ CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const
 }
 
 void add_design(Program& program) {
-    CLI::App* cli = program.add_verb("design", "Make a filter to measure: its taps, its response, its cost",
-                                     "bandlimit design downsample --fetches 8 --plot downsample.svg");
+    Verb cli = program.add_verb("design", "Make a filter to measure: its taps, its response, its cost",
+                                "bandlimit design downsample --fetches 8 --plot downsample.svg");
     const DesignVerb verb{program, cli};
     add_design_downsample(verb);
     add_design_separable(verb);
@@ -126,7 +125,7 @@ void add_design(Program& program) {
     add_design_gaussian(verb);
     add_design_sharpen(verb);
     add_design_kernel(verb);
-    require_one_subcommand(*cli, "design");
+    cli.require_one_subcommand("design");
 }
 
 }  // namespace bandlimit::app

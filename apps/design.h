@@ -23,16 +23,15 @@ struct Design {
 /// The verb `design`, and what its subcommands need to add themselves.
 struct DesignVerb {
     Program& program;
-    CLI::App* cli;
+    Verb cli;
 };
 
 /// Adds a subcommand with the options that all have. The caller adds its own to what is returned.
 ///
 /// `check` sees the parsed options, and throws Error or UsageError for what they alone show to be wrong; `make` does
 /// the work, once all outputs are known to be possible.
-CLI::App* add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
-                          const std::string& example, std::function<void()> check,
-                          std::function<Design(Console&)> make);
+Verb add_design_kind(const DesignVerb& verb, const std::string& name, const std::string& summary,
+                     const std::string& example, std::function<void()> check, std::function<Design(Console&)> make);
 
 /// The subcommands, each in a file of its own.
 void add_design_disk(const DesignVerb& verb);

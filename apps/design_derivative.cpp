@@ -79,22 +79,22 @@ Design make(const Options& o) {
 
 void add_design_derivative(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         verb, "derivative", "Taps that differentiate along an axis, for gradients and normals",
         "bandlimit design derivative --taps 9 --optimal least-squares --ramp --plot derivative.svg", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app->add_option("--taps", o->options.taps,
-                    "How many, 2 to 255: odd on a sample, even halfway between two. Default 5")
-        ->type_name("N");
-    app->add_option("--optimal", o->optimal,
-                    "taylor: exact for polynomials of the highest degree, the default;\n"
-                    "least-squares: the smallest mean square error over the band")
-        ->type_name("NAME");
-    app->add_flag("--ramp", o->options.exact_ramp,
-                  "With least-squares: slopes come out exactly. taylor always keeps them");
-    app->add_option("--band", o->band,
-                    "The error is that below this frequency, in cycles per sample, 0.05 to 1/2; default 1/2")
-        ->type_name("F");
+    app.add_option("--taps", o->options.taps,
+                   "How many, 2 to 255: odd on a sample, even halfway between two. Default 5")
+        .type_name("N");
+    app.add_option("--optimal", o->optimal,
+                   "taylor: exact for polynomials of the highest degree, the default;\n"
+                   "least-squares: the smallest mean square error over the band")
+        .type_name("NAME");
+    app.add_flag("--ramp", o->options.exact_ramp,
+                 "With least-squares: slopes come out exactly. taylor always keeps them");
+    app.add_option("--band", o->band,
+                   "The error is that below this frequency, in cycles per sample, 0.05 to 1/2; default 1/2")
+        .type_name("F");
 }
 
 }  // namespace bandlimit::app

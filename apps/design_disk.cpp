@@ -128,25 +128,25 @@ Design make(const Options& o) {
 
 void add_design_disk(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         verb, "disk", "A disc out of separable filters: complex phasors times Gaussians, for depth of field",
         "bandlimit design disk --components 2 --radius 25 --plot disk.svg -o disk.json", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app->add_option("--components", o->components,
-                    "Phasors, 1 to 5; each costs two pictures between the passes. Default 2")
-        ->type_name("N");
-    app->add_option("--preset", o->preset,
-                    "fit: the nearest to a disc, the default; published: the parameters of Niemitalo 2011 for 1 or 2")
-        ->type_name("NAME");
-    app->add_option("--radius", o->radius,
-                    "Radius of the disc in pixels: adds its weights, as terms. Costs are told for 25 otherwise")
-        ->check(in_range(0.01, largest_radius))
-        ->type_name("PX");
-    app->add_option("--reach", o->reach,
-                    "Weights left and right of the middle one; default: until at most 1 % of the sum is left out; "
-                    "for published as far as in Garcia 2017")
-        ->check(in_range(0, longest_reach))
-        ->type_name("PX");
+    app.add_option("--components", o->components,
+                   "Phasors, 1 to 5; each costs two pictures between the passes. Default 2")
+        .type_name("N");
+    app.add_option("--preset", o->preset,
+                   "fit: the nearest to a disc, the default; published: the parameters of Niemitalo 2011 for 1 or 2")
+        .type_name("NAME");
+    app.add_option("--radius", o->radius,
+                   "Radius of the disc in pixels: adds its weights, as terms. Costs are told for 25 otherwise")
+        .in_range(0.01, largest_radius)
+        .type_name("PX");
+    app.add_option("--reach", o->reach,
+                   "Weights left and right of the middle one; default: until at most 1 % of the sum is left out; "
+                   "for published as far as in Garcia 2017")
+        .in_range(0, longest_reach)
+        .type_name("PX");
 }
 
 }  // namespace bandlimit::app

@@ -262,40 +262,40 @@ Design make(const Options& given) {
 
 void add_design_downsample(const DesignVerb& design) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         design, "downsample", "Shrink by a whole factor, or double, without more aliasing than must be",
         "bandlimit design downsample --fetches 12 --max-gain 1.05 --plot downsample.svg -o downsample.json",
         [o] { check(*o); }, [o](Console&) { return make(*o); });
-    app->add_option("--factor", o->goal.factor, "How many samples become one, 2 to 16; default 2")->type_name("N");
-    app->add_flag("--upsample", o->goal.upsample, "Double instead: the filter of one of the four outputs per texel");
-    app->add_option("--taps", o->where.taps,
-                    "Alone: this many taps along each axis. With --fetches or --threshold: read within so many\n"
-                    "texels a side")
-        ->check(in_range(1, 256))
-        ->type_name("N");
-    app->add_option("--fetches", o->fetches,
-                    "This many bilinear reads, positions and weights optimised together; default 8 (9 for odd\n"
-                    "factors, 4 to double, 16 in a square)")
-        ->check(in_range(1, 64))
-        ->type_name("N");
-    app->add_option("--threshold", o->where.threshold,
-                    "With --taps N: leave out what of the N x N best weights is below it, optimise the others, and\n"
-                    "fold them into fetches")
-        ->check(in_range(0.0, 1.0))
-        ->type_name("T");
-    app->add_option_function<std::string>(
+    app.add_option("--factor", o->goal.factor, "How many samples become one, 2 to 16; default 2").type_name("N");
+    app.add_flag("--upsample", o->goal.upsample, "Double instead: the filter of one of the four outputs per texel");
+    app.add_option("--taps", o->where.taps,
+                   "Alone: this many taps along each axis. With --fetches or --threshold: read within so many\n"
+                   "texels a side")
+        .in_range(1, 256)
+        .type_name("N");
+    app.add_option("--fetches", o->fetches,
+                   "This many bilinear reads, positions and weights optimised together; default 8 (9 for odd\n"
+                   "factors, 4 to double, 16 in a square)")
+        .in_range(1, 64)
+        .type_name("N");
+    app.add_option("--threshold", o->where.threshold,
+                   "With --taps N: leave out what of the N x N best weights is below it, optimise the others, and\n"
+                   "fold them into fetches")
+        .in_range(0.0, 1.0)
+        .type_name("T");
+    app.add_option_function<std::string>(
            "--layout", [o](const std::string& s) { o->where.layout = parse_layout(s); },
            "Where fetches may be: free (default), cross (around the output and along the axes) or square (rows and\n"
            "columns)")
-        ->type_name("free|cross|square");
-    app->add_option_function<std::string>(
+        .type_name("free|cross|square");
+    app.add_option_function<std::string>(
            "--weighting", [o](const std::string& s) { set_weighting(o->goal, s); },
            "How squared errors in the pass band and in the stop band count; default 1,1")
-        ->type_name("PASS,STOP");
-    app->add_option("--max-gain", o->goal.max_gain, "The most that any frequency may be raised to, as 1.05")
-        ->type_name("G");
-    app->add_flag("--non-negative", o->goal.non_negative, "No weights below 0");
-    app->add_flag("--curve", o->curve, "Print errors by number of fetches instead of the fetches");
+        .type_name("PASS,STOP");
+    app.add_option("--max-gain", o->goal.max_gain, "The most that any frequency may be raised to, as 1.05")
+        .type_name("G");
+    app.add_flag("--non-negative", o->goal.non_negative, "No weights below 0");
+    app.add_flag("--curve", o->curve, "Print errors by number of fetches instead of the fetches");
 }
 
 }  // namespace bandlimit::app

@@ -86,19 +86,19 @@ Design make(const Options& o) {
 
 void add_design_gaussian(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         verb, "gaussian", "A Gaussian blur in as few bilinear reads as you like",
         "bandlimit design gaussian --sigma 2 --fetches 5 --emit glsl", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app->add_option("--sigma", o->sigma, "Standard deviation in source texels, 0.1 to 250")->required()->type_name("S");
-    app->add_option("--fetches", o->options.fetches,
-                    "Bilinear reads along each axis, 1 to 2048; N of them hold 2N - 1 taps. Default: what reaches\n"
-                    "3 sigma")
-        ->type_name("N");
-    app->add_option("--form", o->form,
-                    "least-squares: the nearest to the Gaussian's response, the default; sampled: its samples;\n"
-                    "integrated: its integrals over texels; discrete: exact in variance also below sigma 1")
-        ->type_name("NAME");
+    app.add_option("--sigma", o->sigma, "Standard deviation in source texels, 0.1 to 250").required().type_name("S");
+    app.add_option("--fetches", o->options.fetches,
+                   "Bilinear reads along each axis, 1 to 2048; N of them hold 2N - 1 taps. Default: what reaches\n"
+                   "3 sigma")
+        .type_name("N");
+    app.add_option("--form", o->form,
+                   "least-squares: the nearest to the Gaussian's response, the default; sampled: its samples;\n"
+                   "integrated: its integrals over texels; discrete: exact in variance also below sigma 1")
+        .type_name("NAME");
 }
 
 }  // namespace bandlimit::app

@@ -84,28 +84,27 @@ Design make(const Options& o) {
 
 void add_design_kernel(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         verb, "kernel", "A kernel of polynomial pieces, fitted to a response; its shifted copies sum to 1",
         "bandlimit design kernel --radius 2 --interpolating --plot kernel.svg -o kernel.json", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app->add_option("--radius", o->radius, "In source pitches, 0.5 to 8; default 2")->type_name("R");
-    app->add_option("--pieces", o->options.pieces,
-                    "Polynomials of equal length from -R to R, 1 to 64; default one per pitch, 2R")
-        ->type_name("P");
-    app->add_option("--degree", o->options.degree, "Of the polynomials, 0 to 7; default 3")->type_name("D");
-    app->add_option("--smoothness", o->options.smoothness,
-                    "Continuous derivatives, at the ends too; 0: none but itself, -1: jumps. Default 1")
-        ->type_name("C");
-    app->add_flag("--interpolating", o->options.interpolating, "1 at 0 and 0 at the other samples");
-    app->add_option("--for", o->use, "grow (or stay), the default, or shrink: which frequencies disturb how much")
-        ->type_name("USE");
-    app->add_option("--response", o->response,
-                    "ideal, the default, or a kernel whose response is imitated, as lanczos3")
-        ->type_name("KERNEL");
-    app->add_option("--slope", o->slope, "Pictures have the power spectrum f^-A, 0 (white) to 2 (edges); default 2")
-        ->type_name("A");
-    app->add_option("--max-overshoot", o->max_overshoot, "Bound of ringing at a unit step, as 0.1; default none")
-        ->type_name("V");
+    app.add_option("--radius", o->radius, "In source pitches, 0.5 to 8; default 2").type_name("R");
+    app.add_option("--pieces", o->options.pieces,
+                   "Polynomials of equal length from -R to R, 1 to 64; default one per pitch, 2R")
+        .type_name("P");
+    app.add_option("--degree", o->options.degree, "Of the polynomials, 0 to 7; default 3").type_name("D");
+    app.add_option("--smoothness", o->options.smoothness,
+                   "Continuous derivatives, at the ends too; 0: none but itself, -1: jumps. Default 1")
+        .type_name("C");
+    app.add_flag("--interpolating", o->options.interpolating, "1 at 0 and 0 at the other samples");
+    app.add_option("--for", o->use, "grow (or stay), the default, or shrink: which frequencies disturb how much")
+        .type_name("USE");
+    app.add_option("--response", o->response, "ideal, the default, or a kernel whose response is imitated, as lanczos3")
+        .type_name("KERNEL");
+    app.add_option("--slope", o->slope, "Pictures have the power spectrum f^-A, 0 (white) to 2 (edges); default 2")
+        .type_name("A");
+    app.add_option("--max-overshoot", o->max_overshoot, "Bound of ringing at a unit step, as 0.1; default none")
+        .type_name("V");
 }
 
 }  // namespace bandlimit::app

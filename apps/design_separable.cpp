@@ -254,26 +254,26 @@ Design make(const Options& o, Console& console) {
 
 void add_design_separable(const DesignVerb& verb) {
     auto o = std::make_shared<Options>();
-    CLI::App* app = add_design_kind(
+    Verb app = add_design_kind(
         verb, "separable", "Any kernel as a sum of few separable ones: columns times rows",
         "bandlimit design separable disc:50:0.8 --rank 4 --optimise --keep-zeros 0.3 --non-negative 0.5 --plot "
         "disc.png",
         [o] { check(*o); }, [o](Console& console) { return make(*o, console); });
-    app->add_option("kernel", o->kernel,
-                    "An image of a kernel, or a shape on SIZE x SIZE points from -1 to 1:\n" + shape_lines())
-        ->required()
-        ->type_name("KERNEL|IMAGE");
-    app->add_option("--rank", o->rank,
-                    "Terms; default: those that hold 99.9 % of a shape's energy, those above the noise of an image")
-        ->type_name("N");
-    app->add_option("--non-negative", o->loss.non_negative,
-                    "What a negative weight costs beside squares, as 0.5; default 0")
-        ->type_name("W");
-    app->add_option("--keep-zeros", o->loss.keep_zeros, "What a weight costs where the kernel is 0, as 0.3; default 0")
-        ->type_name("W");
-    app->add_flag("--optimise,--optimize", o->optimise,
-                  "Lower the loss: the mean of squares and what these two add to it");
-    add_space(app, o->space)->description("What an image's codes mean; default data: they are the weights");
+    app.add_option("kernel", o->kernel,
+                   "An image of a kernel, or a shape on SIZE x SIZE points from -1 to 1:\n" + shape_lines())
+        .required()
+        .type_name("KERNEL|IMAGE");
+    app.add_option("--rank", o->rank,
+                   "Terms; default: those that hold 99.9 % of a shape's energy, those above the noise of an image")
+        .type_name("N");
+    app.add_option("--non-negative", o->loss.non_negative,
+                   "What a negative weight costs beside squares, as 0.5; default 0")
+        .type_name("W");
+    app.add_option("--keep-zeros", o->loss.keep_zeros, "What a weight costs where the kernel is 0, as 0.3; default 0")
+        .type_name("W");
+    app.add_flag("--optimise,--optimize", o->optimise,
+                 "Lower the loss: the mean of squares and what these two add to it");
+    add_space(app, o->space).description("What an image's codes mean; default data: they are the weights");
 }
 
 }  // namespace bandlimit::app

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "apps/texture_file.h"
 
@@ -122,10 +123,9 @@ void run(const Options& options, Console& console) {
 
 void add_info(Program& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* verb =
-        program.add_verb("info", "Show size, channels, depth, colour and levels of an image or texture file",
-                         "bandlimit info examples/coffee.png");
-    verb->add_option("FILE", options->file, "Image, .ktx2 or .dds to look at")->required();
+    Verb verb = program.add_verb("info", "Show size, channels, depth, colour and levels of an image or texture file",
+                                 "bandlimit info examples/coffee.png");
+    verb.add_option("FILE", options->file, "Image, .ktx2 or .dds to look at").required();
     add_json(verb, options->json);
     program.on(
         verb, [] {}, [options](Console& console) { run(*options, console); });

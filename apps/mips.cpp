@@ -1,6 +1,7 @@
 // bandlimit mips: the command line of the mip chains.
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
 #include "apps/batch.h"
 #include "apps/common.h"
 #include "apps/mips_run.h"
@@ -11,8 +12,8 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-    std::vector<std::string> files;               ///< IN... OUT
-    std::vector<CLI::Option*> of_levels, of_one;  ///< options that --keep-levels, or --batch, does not take
+    std::vector<std::string> files;         ///< IN... OUT
+    std::vector<Option> of_levels, of_one;  ///< options that --keep-levels, or --batch, does not take
     MipsJob job;
     bool is_batch = false;
     BatchJob batch;
@@ -21,11 +22,11 @@ struct Options {
 };
 
 /// Throws UsageError if one of these options was given.
-void refuse(const std::vector<CLI::Option*>& options, const std::string& by, const std::string& reason) {
-    for (const CLI::Option* option : options)
-        if (option->count() > 0)
+void refuse(const std::vector<Option>& options, const std::string& by, const std::string& reason) {
+    for (const Option option : options)
+        if (option.is_given())
             throw UsageError(
-                fmt::format("{} does not go with {}: {}; leave one of them out", option->get_name(), by, reason));
+                fmt::format("{} does not go with {}: {}; leave one of them out", option.name(), by, reason));
 }
 
 /// Splits the files into inputs and output, and checks what the command line alone shows.
@@ -183,18 +184,18 @@ void run_many(const Options& o, Console& console) {
 
 using Setter = void (*)(MipsRecipe&, const std::string&);
 
-CLI::Option* add_setter(CLI::App* verb, const std::shared_ptr<Options>& o, const std::string& name, Setter set,
-                        const std::string& help, const std::string& type) {
+Option add_setter(Verb verb, const std::shared_ptr<Options>& o, const std::string& name, Setter set,
+                  const std::string& help, const std::string& type) {
     return verb
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             name, [o, set](const std::string& s) { set(o->job.recipe, s); }, help)
-        ->type_name(type);
+        .type_name(type);
 }
 
 /// Adds the options that say how levels are made, and returns them.
-std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Options>& o) {
+std::vector<Option> add_recipe(Verb verb, const std::shared_ptr<Options>& o) {
     MipsRecipe& recipe = o->job.recipe;
-    std::vector<CLI::Option*> options;
+    std::vector<Option> options;
     options.push_back(add_setter(
         verb, o, "--role", set_role,
         "What the texels are, which decides what their mean is; auto (default) guesses from the file's name\n"
@@ -203,12 +204,12 @@ std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Optio
         "normal: unit vectors; roughness: grows by what --normal loses; height, mask, data: as they are",
         "auto|ROLE"));
     options.push_back(
-        verb->add_option("--normal", recipe.normal, "The normal map of the same surface, for --role roughness")
-            ->type_name("FILE"));
-    options.push_back(verb->add_option_function<double>(
+        verb.add_option("--normal", recipe.normal, "The normal map of the same surface, for --role roughness")
+            .type_name("FILE"));
+    options.push_back(verb.add_option_function<double>(
                               "--alpha-threshold", [o](double t) { set_threshold(o->job.recipe, t); },
                               "Alpha that passes, for --role alpha-tested; default 0.5")
-                          ->type_name("T"));
+                          .type_name("T"));
     options.push_back(add_setter(verb, o, "--filter", set_filter,
                                  "A kernel (bandlimit analyze --list), auto (default: shrink3), downsample8 (eight\n"
                                  "bilinear reads, as shaders run it), or a taps.json of factor 2",
@@ -222,41 +223,31 @@ std::vector<CLI::Option*> add_recipe(CLI::App* verb, const std::shared_ptr<Optio
                    "What lies beyond the borders: wrap for textures that tile, else clamp, reflect, zero\n"
                    "or renormalize (the default); one for both axes, or two as wrap,clamp",
                    "EDGE|X,Y"));
-    options.push_back(verb->add_option("--levels", recipe.levels, "How many levels, level 0 included; default: all")
-                          ->check(in_range(1, 31))
-                          ->type_name("N"));
+    options.push_back(verb.add_option("--levels", recipe.levels, "How many levels, level 0 included; default: all")
+                          .in_range(1, 31)
+                          .type_name("N"));
     options.push_back(add_space(verb, recipe.space)
-                          ->description("What the input's codes mean: auto (default: what role and file say), srgb,\n"
-                                        "linear, or data"));
-    options.push_back(add_depth(verb, recipe.depth)->description("Depth of the texels; default: that of the input"));
-    options.push_back(verb->add_option_function<int>(
+                          .description("What the input's codes mean: auto (default: what role and file say), srgb,\n"
+                                       "linear, or data"));
+    options.push_back(add_depth(verb, recipe.depth).description("Depth of the texels; default: that of the input"));
+    options.push_back(verb.add_option_function<int>(
                               "--channels", [o](int n) { set_channels(o->job.recipe, n); },
                               "Channels of the texels; default: what picture and role need (RGB becomes RGBA, grey\n"
                               "data one channel, grey sRGB colour RGBA)")
-                          ->type_name("1|2|4"));
-    options.push_back(verb->add_flag("--two-channel", recipe.two_channel,
-                                     "Keep x and y of normals, for shaders and encoders (BC5) that make z of them"));
-    options.push_back(verb->add_flag("--premultiplied", recipe.premultiplied,
-                                     "Store colour multiplied by alpha, and say so in the file"));
+                          .type_name("1|2|4"));
+    options.push_back(verb.add_flag("--two-channel", recipe.two_channel,
+                                    "Keep x and y of normals, for shaders and encoders (BC5) that make z of them"));
+    options.push_back(verb.add_flag("--premultiplied", recipe.premultiplied,
+                                    "Store colour multiplied by alpha, and say so in the file"));
     return options;
 }
 
-/// "512MB", "4G": a number with a unit of 1024 or its powers. Throws UsageError, naming the option.
-std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
-    std::string bytes = text;
-    try {
-        if (CLI::AsSizeValue(false)(bytes).empty() && parse_number(option, bytes) >= 1) return std::stoull(bytes);
-    } catch (const CLI::Error&) {  // of the unit
-    }
-    throw UsageError(fmt::format("{}: \"{}\" is not an amount of memory; write it as 512MB or 4GB", option, text));
-}
-
-void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {
-    CLI::Option* batch = verb->add_flag(
-        "--batch", o->is_batch,
-        "Make a texture of every image below DIR, at the same place below OUTDIR, in files of --format;\n"
-        "what is up to date is skipped, by content, and what fails does not stop the others");
-    verb->add_option_function<std::string>(
+void add_batch(Verb verb, const std::shared_ptr<Options>& o) {
+    Option batch =
+        verb.add_flag("--batch", o->is_batch,
+                      "Make a texture of every image below DIR, at the same place below OUTDIR, in files of --format;\n"
+                      "what is up to date is skipped, by content, and what fails does not stop the others");
+    verb.add_option_function<std::string>(
             "--format",
             [o](const std::string& s) {
                 if (s != "ktx2" && s != "dds")
@@ -264,46 +255,46 @@ void add_batch(CLI::App* verb, const std::shared_ptr<Options>& o) {
                 o->batch.format = s == "dds" ? Container::dds : Container::ktx2;
             },
             "Kind of files that --batch makes; default ktx2")
-        ->needs(batch)
-        ->type_name("ktx2|dds");
-    verb->add_option("--rules", o->batch.rules,
-                     "Which pictures of a batch have which role and options: a JSON file, see docs/batch.md")
-        ->needs(batch)
-        ->type_name("FILE");
-    verb->add_option_function<std::string>(
+        .needs(batch)
+        .type_name("ktx2|dds");
+    verb.add_option("--rules", o->batch.rules,
+                    "Which pictures of a batch have which role and options: a JSON file, see docs/batch.md")
+        .needs(batch)
+        .type_name("FILE");
+    verb.add_option_function<std::string>(
             "--memory", [o](const std::string& s) { o->batch.memory = parse_bytes("--memory", s); },
             "Memory for the pictures of a batch that are worked on at a time, as 4GB; default: a quarter of\n"
             "what is available; one picture is always worked on")
-        ->needs(batch)
-        ->type_name("SIZE");
-    verb->add_flag("--dry-run", o->batch.is_dry, "Show what --batch would do, with the roles it guesses, and stop")
-        ->needs(batch);
+        .needs(batch)
+        .type_name("SIZE");
+    verb.add_flag("--dry-run", o->batch.is_dry, "Show what --batch would do, with the roles it guesses, and stop")
+        .needs(batch);
 }
 
 }  // namespace
 
 void add_mips(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb = program.add_verb("mips", "Make textures with all their mip levels, by what their texels mean",
-                                      "bandlimit mips examples/coffee.png coffee.ktx2 --role color\n"
-                                      "  bandlimit mips examples/gravel.png gravel_%d.png --role height --edge wrap\n"
-                                      "  bandlimit mips coffee.ktx2 coffee.dds --keep-levels\n"
-                                      "  bandlimit mips --batch examples textures --edge wrap");
-    verb->add_option("FILES", o->files,
-                     "IN... OUT: images or textures (their level 0) to read, and a .ktx2 or .dds file to write, or\n"
-                     "images, one per level, with %d for its number: wall_%d.png. With --batch: DIR OUTDIR")
-        ->required();
+    Verb verb = program.add_verb("mips", "Make textures with all their mip levels, by what their texels mean",
+                                 "bandlimit mips examples/coffee.png coffee.ktx2 --role color\n"
+                                 "  bandlimit mips examples/gravel.png gravel_%d.png --role height --edge wrap\n"
+                                 "  bandlimit mips coffee.ktx2 coffee.dds --keep-levels\n"
+                                 "  bandlimit mips --batch examples textures --edge wrap");
+    verb.add_option("FILES", o->files,
+                    "IN... OUT: images or textures (their level 0) to read, and a .ktx2 or .dds file to write, or\n"
+                    "images, one per level, with %d for its number: wall_%d.png. With --batch: DIR OUTDIR")
+        .required();
     o->of_levels = add_recipe(verb, o);
-    CLI::Option* cube = verb->add_flag("--cube", o->job.is_cube,
-                                       "Six inputs are the faces +x -x +y -y +z -z of a cube map, filtered across "
-                                       "their edges");
-    CLI::Option* array = verb->add_flag("--array", o->job.is_array, "The inputs, of equal size, are layers");
-    CLI::Option* keep = verb->add_flag("--keep-levels", o->job.keep_levels,
-                                       "Copy the levels of a texture as they are, into another kind of file");
+    Option cube = verb.add_flag("--cube", o->job.is_cube,
+                                "Six inputs are the faces +x -x +y -y +z -z of a cube map, filtered across "
+                                "their edges");
+    Option array = verb.add_flag("--array", o->job.is_array, "The inputs, of equal size, are layers");
+    Option keep = verb.add_flag("--keep-levels", o->job.keep_levels,
+                                "Copy the levels of a texture as they are, into another kind of file");
     o->of_levels.insert(o->of_levels.end(), {cube, array});
-    o->of_one = {cube, array, keep, verb->get_option("--normal")};
+    o->of_one = {cube, array, keep, verb.option("--normal")};
     add_batch(verb, o);
-    add_threads(verb, o->parallel)->description("Most threads to keep busy; 0 (default): one per core");
+    add_threads(verb, o->parallel).description("Most threads to keep busy; 0 (default): one per core");
     add_json(verb, o->json);
     program.add_quiet(verb);
     program.on(

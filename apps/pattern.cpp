@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "apps/pictures.h"
 #include "bandlimit/core/pipeline.h"
@@ -171,23 +172,23 @@ void run(const Options& o, Console& console) {
 /// Options of one kind: each sets a member of the options of its signal.
 class KindOptions {
 public:
-    explicit KindOptions(CLI::App* kind) : kind_(kind) {}
+    explicit KindOptions(Verb kind) : kind_(kind) {}
 
     /// A number, or a fraction such as 1/6.
     template <class Number>
     void number(const std::string& name, Number& target, const std::string& help, const std::string& type) {
         kind_
-            ->add_option_function<std::string>(
+            .add_option_function<std::string>(
                 name, [&target, name](const std::string& s) { target = parse_number(name, s); }, help)
-            ->type_name(type);
+            .type_name(type);
     }
     template <class Integer>
     void integer(const std::string& name, Integer& target, const std::string& help) {
-        CLI::Option* option = kind_->add_option(name, target, help)->type_name("N");
+        Option option = kind_.add_option(name, target, help).type_name("N");
         if constexpr (std::is_unsigned_v<Integer>)
-            option->check(in_range(0.0, 18446744073709551615.0));  // the parser would wrap it
+            option.in_range(0.0, 18446744073709551615.0);  // the parser would wrap it
     }
-    void flag(const std::string& name, bool& target, const std::string& help) { kind_->add_flag(name, target, help); }
+    void flag(const std::string& name, bool& target, const std::string& help) { kind_.add_flag(name, target, help); }
     void point(const std::string& name, std::optional<Point>& target, const std::string& help) {
         numbers(name, "X,Y", help, 2, [&target](const std::vector<double>& n) { target = Point{n[0], n[1]}; });
     }
@@ -207,36 +208,35 @@ private:
                     fmt::format("{}: \"{}\" is not {}; write {} numbers with commas", name, s, type, count));
             set(values);
         };
-        kind_->add_option_function<std::string>(name, parse, help)->type_name(type);
+        kind_.add_option_function<std::string>(name, parse, help).type_name(type);
     }
 
-    CLI::App* kind_;
+    Verb kind_;
 };
 
-void add_common(Program& program, CLI::App* kind, const std::shared_ptr<Options>& o) {
-    kind->add_option("OUT", o->out, "Image to write; the extension names the format")->required();
-    kind->add_option("--size", o->size, "Size in pixels, as 512x512")->required()->type_name("WxH");
-    kind->add_option("--antialias", o->antialias,
-                     "none (default): the value at the centre of each pixel; exact: the mean over each pixel,\n"
-                     "where a closed form is known (all but siemens and noise); or a kernel, supersampled")
-        ->type_name("none|exact|KERNEL");
-    kind->add_option("--samples", o->samples, "Samples per pixel and axis for --antialias KERNEL; default 8")
-        ->check(in_range(1, 1024))
-        ->type_name("N");
+void add_common(Program& program, Verb kind, const std::shared_ptr<Options>& o) {
+    kind.add_option("OUT", o->out, "Image to write; the extension names the format").required();
+    kind.add_option("--size", o->size, "Size in pixels, as 512x512").required().type_name("WxH");
+    kind.add_option("--antialias", o->antialias,
+                    "none (default): the value at the centre of each pixel; exact: the mean over each pixel,\n"
+                    "where a closed form is known (all but siemens and noise); or a kernel, supersampled")
+        .type_name("none|exact|KERNEL");
+    kind.add_option("--samples", o->samples, "Samples per pixel and axis for --antialias KERNEL; default 8")
+        .in_range(1, 1024)
+        .type_name("N");
     KindOptions numbers(kind);
     numbers.number("--low", o->low, "Linear light where the signal is 0; default 0", "L");
     numbers.number("--high", o->high, "Linear light where the signal is 1; default 1", "L");
-    add_depth(kind, o->depth)->description("Depth of the output; default: f32 for EXR, HDR and PFM, else u8");
+    add_depth(kind, o->depth).description("Depth of the output; default: f32 for EXR, HDR and PFM, else u8");
     add_space(kind, o->space)
-        ->description(
+        .description(
             "What codes shall mean: auto (sRGB for 8 and 16 bit, else linear), srgb, or linear and data\n"
             "(codes are the values)");
-    kind->add_option(
-            "--channels", o->channels,
-            "1 grey, 2 grey and alpha, 3 RGB, 4 RGBA, all colours alike, alpha opaque; default: 1, or 3 where\n"
-            "the format has no grey")
-        ->check(in_range(1, 4))
-        ->type_name("N");
+    kind.add_option("--channels", o->channels,
+                    "1 grey, 2 grey and alpha, 3 RGB, 4 RGBA, all colours alike, alpha opaque; default: 1, or 3 where\n"
+                    "the format has no grey")
+        .in_range(1, 4)
+        .type_name("N");
     add_tiles(kind, o->tile);
     add_threads(kind, o->parallel);
     add_json(kind, o->json);
@@ -245,7 +245,7 @@ void add_common(Program& program, CLI::App* kind, const std::shared_ptr<Options>
 
 /// Adds a kind whose signal is make(size, options); `add` adds the options of its own.
 template <class SignalOptions>
-void add_kind(Program& program, CLI::App* verb, const std::string& name, const std::string& summary,
+void add_kind(Program& program, Verb verb, const std::string& name, const std::string& summary,
               const std::string& example, const std::function<void(KindOptions&, SignalOptions&)>& add,
               const std::function<Signal(Size, const SignalOptions&)>& make,
               const std::function<std::uint64_t(Size, const SignalOptions&)>& bytes = {}) {
@@ -254,8 +254,8 @@ void add_kind(Program& program, CLI::App* verb, const std::string& name, const s
     o->kind = name;
     o->make_signal = [own, make](Size size) { return make(size, *own); };
     if (bytes) o->bytes = [own, bytes](Size size) { return bytes(size, *own); };
-    CLI::App* kind = verb->add_subcommand(name, summary);
-    kind->footer(fmt::format("Example:\n  bandlimit pattern {} {}", name, example));
+    Verb kind = verb.add_subcommand(name, summary);
+    kind.example(fmt::format("bandlimit pattern {} {}", name, example));
     KindOptions options(kind);
     add(options, *own);
     add_common(program, kind, o);
@@ -269,7 +269,7 @@ constexpr const char* angle_help = "Direction in which the signal varies, in deg
 constexpr const char* phase_help = "Phase in periods; default 0";
 constexpr const char* center_help = "Centre in pixels; default: the middle of the image";
 
-void add_waves(Program& program, CLI::App* verb) {
+void add_waves(Program& program, Verb verb) {
     add_kind<ZonePlateOptions>(
         program, verb, "zoneplate", "Rings: the frequency grows with the distance from the centre",
         "zoneplate.png --size 512x512 --antialias exact",
@@ -336,7 +336,7 @@ void add_waves(Program& program, CLI::App* verb) {
         });
 }
 
-void add_shapes(Program& program, CLI::App* verb) {
+void add_shapes(Program& program, Verb verb) {
     add_kind<StepEdgeOptions>(
         program, verb, "edge", "A straight edge between dark and bright",
         "edge.png --size 256x256 --angle 5 --antialias exact",
@@ -393,11 +393,11 @@ void add_shapes(Program& program, CLI::App* verb) {
 }  // namespace
 
 void add_pattern(Program& program) {
-    CLI::App* verb = program.add_verb("pattern", "Draw a test signal whose right answer is known",
-                                      "bandlimit pattern zoneplate zoneplate.png --size 512x512 --antialias exact");
+    Verb verb = program.add_verb("pattern", "Draw a test signal whose right answer is known",
+                                 "bandlimit pattern zoneplate zoneplate.png --size 512x512 --antialias exact");
     add_waves(program, verb);
     add_shapes(program, verb);
-    require_one_subcommand(*verb, "kind of signal");
+    verb.require_one_subcommand("kind of signal");
 }
 
 }  // namespace bandlimit::app

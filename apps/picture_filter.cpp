@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 namespace bandlimit::app {
 namespace {
 
@@ -48,9 +50,9 @@ void note_foreign_profile(const Console& console, const std::string& file, const
             fmt::format("{} has an ICC profile that is not sRGB: it is kept, its curve is treated as sRGB", file));
 }
 
-CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply) {
+Option add_alpha(Verb verb, std::optional<bool>& premultiply) {
     return verb
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             "--alpha",
             [&premultiply](const std::string& s) {
                 if (s != "premultiply" && s != "straight")
@@ -59,15 +61,15 @@ CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply) {
             },
             "premultiply (default): transparent texels do not bleed, and come out with colour 0;\n"
             "straight: every channel by itself (default for --space data)")
-        ->type_name("premultiply|straight");
+        .type_name("premultiply|straight");
 }
 
-void add_pictures(CLI::App* verb, PictureOptions& o) {
-    verb->add_option("IN", o.in, "Image to read")->required();
-    verb->add_option("OUT", o.out, "Image to write; the extension names the format")->required();
+void add_pictures(Verb verb, PictureOptions& o) {
+    verb.add_option("IN", o.in, "Image to read").required();
+    verb.add_option("OUT", o.out, "Image to write; the extension names the format").required();
 }
 
-void add_picture_options(Program& program, CLI::App* verb, PictureOptions& o) {
+void add_picture_options(Program& program, Verb verb, PictureOptions& o) {
     add_edge(verb, o.edge);
     add_space(verb, o.space);
     add_alpha(verb, o.premultiply);

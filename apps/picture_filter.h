@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "apps/row_stream.h"
 
@@ -21,7 +22,7 @@ void treat_alpha_as_asked(Space space, bool premultiply, int source_alpha, bool 
 void note_foreign_profile(const Console& console, const std::string& file, const ImageInfo& in, Space space);
 
 /// Adds --alpha.
-CLI::Option* add_alpha(CLI::App* verb, std::optional<bool>& premultiply);
+Option add_alpha(Verb verb, std::optional<bool>& premultiply);
 
 struct PictureOptions {
     std::string in, out;
@@ -37,8 +38,8 @@ struct PictureOptions {
 };
 
 /// Adds IN, OUT and the options above but IN and OUT, which come first.
-void add_pictures(CLI::App* verb, PictureOptions& o);
-void add_picture_options(Program& program, CLI::App* verb, PictureOptions& o);
+void add_pictures(Verb verb, PictureOptions& o);
+void add_picture_options(Program& program, Verb verb, PictureOptions& o);
 /// Throws UsageError for what the command line alone shows to be wrong.
 void check_pictures(const PictureOptions& o);
 

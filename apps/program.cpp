@@ -10,7 +10,6 @@
 
 #include "apps/command.h"
 #include "apps/common.h"
-#include "apps/parse_error.h"
 #include "bandlimit/core/targets.h"
 
 namespace bandlimit::app {
@@ -25,8 +24,6 @@ std::string pasted(const std::string& word) {
 }
 
 void add_verbs(Program& program) {
-    program.cli.set_version_flag("--version", "bandlimit " BANDLIMIT_VERSION);
-    program.cli.footer("bandlimit VERB --help shows the options of a verb, and an example.");
     add_resize(program);
     add_convolve(program);
     add_bokeh(program);
@@ -38,27 +35,24 @@ void add_verbs(Program& program) {
     add_audit(program);
     add_info(program);
     add_tour(program);
-    require_one_subcommand(program.cli, "verb");
+    program.command_line.program().require_one_subcommand("verb");
 }
 
 /// Sets program.selected. Throws UsageError, or what the file system says of an output that exists.
 void parse(Program& program, std::span<const char* const> arguments) {
     try {
-        program.cli.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+        if (const auto text = program.command_line.parse(arguments)) {
+            program.selected = [&program, text] { program.console.write(*text); };
+            return;
+        }
         current_target();  // throws where BANDLIMIT_TARGETS holds none
-    } catch (const CLI::CallForVersion& version) {
-        program.selected = [&program, text = std::string(version.what())] { program.console.write(text + "\n"); };
-    } catch (const CLI::Success&) {  // for help
-        program.selected = [&program] { program.console.write(program.cli.help()); };
-    } catch (const CLI::ParseError& e) {
-        throw UsageError(explanation(e, program.cli));
     } catch (const Error& e) {
         throw UsageError(e.what());
     }
 }
 
 void try_to_run(std::span<const char* const> arguments, Console& console) {
-    Program program{console, "bandlimit"};
+    Program program{console, "bandlimit", CommandLine("bandlimit " BANDLIMIT_VERSION)};
     for (const char* argument : arguments) program.command += " " + pasted(argument);
     add_verbs(program);
     parse(program, arguments);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
 #include "apps/common.h"
 #include "apps/picture_filter.h"
 #include "apps/row_stream.h"
@@ -232,25 +233,24 @@ void run(const Options& o, Console& console) {
 
 void add_resize(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* verb =
-        program.add_verb("resize", "Resample an image: in linear light, without bleeding, shift or aliasing",
-                         "bandlimit resize examples/coffee.png half.png --scale 0.5");
-    verb->add_option("IN", o->in, "Image to read")->required();
-    verb->add_option("OUT", o->out, "Image to write; the extension names the format")->required();
-    verb->add_option("--size", o->size, "New size")->type_name("WxH");
-    verb->add_option("--width", o->width, "New width; the height follows unless given")
-        ->check(in_range(1, 2147483647))
-        ->type_name("W");
-    verb->add_option("--height", o->height, "New height; the width follows unless given")
-        ->check(in_range(1, 2147483647))
-        ->type_name("H");
-    verb->add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3")->type_name("S");
-    verb->add_option("--kernel", o->kernel,
-                     "Kernel (bandlimit analyze --list), or a taps.json; auto: shrink3 along an axis that shrinks,\n"
-                     "grow3 along one that grows or keeps its size")
-        ->type_name("K|auto");
+    Verb verb = program.add_verb("resize", "Resample an image: in linear light, without bleeding, shift or aliasing",
+                                 "bandlimit resize examples/coffee.png half.png --scale 0.5");
+    verb.add_option("IN", o->in, "Image to read").required();
+    verb.add_option("OUT", o->out, "Image to write; the extension names the format").required();
+    verb.add_option("--size", o->size, "New size").type_name("WxH");
+    verb.add_option("--width", o->width, "New width; the height follows unless given")
+        .in_range(1, 2147483647)
+        .type_name("W");
+    verb.add_option("--height", o->height, "New height; the width follows unless given")
+        .in_range(1, 2147483647)
+        .type_name("H");
+    verb.add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3").type_name("S");
+    verb.add_option("--kernel", o->kernel,
+                    "Kernel (bandlimit analyze --list), or a taps.json; auto: shrink3 along an axis that shrinks,\n"
+                    "grow3 along one that grows or keeps its size")
+        .type_name("K|auto");
     add_edge(verb, o->edge);
-    verb->add_option_function<std::string>(
+    verb.add_option_function<std::string>(
             "--align",
             [o](const std::string& s) {
                 if (s != "corners" && s != "centers")
@@ -259,16 +259,16 @@ void add_resize(Program& program) {
             },
             "What both images share: their corners (default), or the centres of their first and last\n"
             "samples, which other libraries call align_corners")
-        ->type_name("corners|centers");
-    verb->add_option("--region", o->region,
-                     "Part of the source to resample, in source pixels, fractions allowed;\n"
-                     "what lies around it contributes at its borders")
-        ->type_name("X,Y,W,H");
-    verb->add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1")->type_name("A");
+        .type_name("corners|centers");
+    verb.add_option("--region", o->region,
+                    "Part of the source to resample, in source pixels, fractions allowed;\n"
+                    "what lies around it contributes at its borders")
+        .type_name("X,Y,W,H");
+    verb.add_option("--antiring", o->antiring, "Share of the overshoot to remove, 0 (default) to 1").type_name("A");
     add_space(verb, o->space);
     add_alpha(verb, o->premultiply);
-    verb->add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")
-        ->type_name("RRGGBB");
+    verb.add_option("--background", o->background, "Opaque colour to lay the picture over; drops alpha")
+        .type_name("RRGGBB");
     add_depth(verb, o->depth);
     add_tiles(verb, o->tile);
     add_threads(verb, o->parallel);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include <nlohmann/json.hpp>
 #include "bandlimit/filter/bokeh.h"
 #include "bandlimit/kernel/low_rank.h"
 
@@ -70,14 +71,14 @@ void note_shift(const Console& console, const ConvolutionWeights& weights) {
 
 }  // namespace
 
-void add_choice(CLI::App* verb, ConvolutionChoice& choice) {
-    CLI::Option* const rank =
-        verb->add_option("--rank", choice.rank, "Run the nearest sum of N products instead: an approximation")
-            ->check(in_range(1, 4096))
-            ->type_name("N");
-    CLI::Option* const exact = verb->add_flag("--exact", choice.is_exact, "Run every weight by itself")->excludes(rank);
-    verb->add_flag("--fft", choice.is_fft, "Run by Fourier transforms")->excludes(rank)->excludes(exact);
-    verb->add_flag("--keep-sum", choice.keeps_sum, "Run weights as they are; without, they are divided by their sum");
+void add_choice(Verb verb, ConvolutionChoice& choice) {
+    Option const rank =
+        verb.add_option("--rank", choice.rank, "Run the nearest sum of N products instead: an approximation")
+            .in_range(1, 4096)
+            .type_name("N");
+    Option const exact = verb.add_flag("--exact", choice.is_exact, "Run every weight by itself").excludes(rank);
+    verb.add_flag("--fft", choice.is_fft, "Run by Fourier transforms").excludes(rank).excludes(exact);
+    verb.add_flag("--keep-sum", choice.keeps_sum, "Run weights as they are; without, they are divided by their sum");
 }
 
 WeightGrid read_weights(const std::string& path) {

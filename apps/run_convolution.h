@@ -15,7 +15,7 @@ struct ConvolutionChoice {
     Method method() const { return is_exact ? Method::direct : is_fft ? Method::fft : Method::automatic; }
 };
 /// Adds --rank, --exact, --fft and --keep-sum.
-void add_choice(CLI::App* verb, ConvolutionChoice& choice);
+void add_choice(Verb verb, ConvolutionChoice& choice);
 
 /// The weights of an image: the mean of its colours, times alpha, as its codes have them, which are not decoded.
 WeightGrid read_weights(const std::string& path);

@@ -67,10 +67,10 @@ void run(const Options& options, Console& console) {
 
 void add_tour(Program& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* verb =
+    Verb verb =
         program.add_verb("tour", "Write a page of figures and numbers that show what resampling does, right and wrong",
                          "bandlimit tour out");
-    verb->add_option("DIR", options->directory, "Directory to write index.html and its pictures to")->required();
+    verb.add_option("DIR", options->directory, "Directory to write index.html and its pictures to").required();
     add_threads(verb, options->parallel);
     program.add_quiet(verb);
     program.on(

@@ -12,6 +12,7 @@ function(bandlimit_codecs name)
     # Nothing but a weak reference names the table: bandlimit/io/codecs.cpp asks whether it is there.
     target_link_options(${target} INTERFACE LINKER:-u,bandlimit_${name}_codecs)
     bandlimit_options(${target})
+    bandlimit_precompile(${target})
     set_target_properties(${target} PROPERTIES BANDLIMIT_LIBRARIES "${ARGN}")
     target_link_libraries(bandlimit_io INTERFACE
         $<BUILD_INTERFACE:$<$<NOT:$<BOOL:$<TARGET_PROPERTY:BANDLIMIT_LOADS_CODECS>>>:${target}>>

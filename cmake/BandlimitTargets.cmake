@@ -30,6 +30,31 @@ function(bandlimit_options target)
     endif()
 endfunction()
 
+# What most files include, compiled once for all libraries.
+set(BANDLIMIT_STANDARD_HEADERS <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory> <numeric> <optional>
+    <span> <stdexcept> <string> <utility> <variant> <vector>)
+
+# bandlimit_precompile(TARGET [header...]): the standard headers compiled once for all libraries, or with other headers
+# for one. Not with sanitizers, so that ./check all finds a file that includes too little.
+function(bandlimit_precompile target)
+    if(BANDLIMIT_SANITIZE)
+        return()
+    endif()
+    if(ARGN)
+        target_precompile_headers(${target} PRIVATE ${BANDLIMIT_STANDARD_HEADERS} ${ARGN})
+        return()
+    endif()
+    if(NOT TARGET standard_headers)
+        set(source ${PROJECT_BINARY_DIR}/standard_headers.cpp)
+        file(CONFIGURE OUTPUT ${source} CONTENT "")
+        add_library(standard_headers OBJECT ${source})
+        target_compile_features(standard_headers PRIVATE cxx_std_20)
+        target_precompile_headers(standard_headers PRIVATE ${BANDLIMIT_STANDARD_HEADERS})
+        bandlimit_options(standard_headers)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM standard_headers)
+endfunction()
+
 # bandlimit_vector_sources(RESULT source...): those that know Highway's targets; most are compiled once for each.
 function(bandlimit_vector_sources result)
     set(found)
@@ -71,6 +96,7 @@ function(bandlimit_component name)
         $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(${target} PUBLIC cxx_std_20)
     bandlimit_options(${target})
+    bandlimit_precompile(${target})
     install(TARGETS ${target} EXPORT bandlimit_${name}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name})
@@ -92,8 +118,6 @@ function(bandlimit_program)
         PRIVATE bandlimit::design bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
     target_include_directories(bandlimit_app SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
     target_compile_definitions(bandlimit_app PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
-    # Every verb includes both, and they take longer to read than the verbs.
-    target_precompile_headers(bandlimit_app PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
     include(BandlimitEmbed)
     file(GLOB photographs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*.png)
     bandlimit_embed_photographs(bandlimit_app ${photographs})
@@ -103,6 +127,7 @@ function(bandlimit_program)
         bandlimit_options(${target})
         target_compile_options(${target} PRIVATE ${BANDLIMIT_PROGRAM_OPTIONS})
     endforeach()
+    bandlimit_precompile(bandlimit_app <chrono> <filesystem> <map> <fmt/core.h> <nlohmann/json.hpp>)
     install(TARGETS bandlimit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()
 
@@ -195,8 +220,8 @@ function(bandlimit_consumer_tests)
 endfunction()
 
 # The target headers: each header in a translation unit of its own, with what its component gives to a consumer. But
-# x.h beside x.cpp, which scripts/check-includes has include it first, is compiled alone there; only the program has its
-# precompiled header before that.
+# x.h beside x.cpp, which scripts/check-includes has include it first, is compiled alone there where nothing is
+# precompiled.
 function(bandlimit_header_checks)
     add_custom_target(headers)
     get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
@@ -216,7 +241,7 @@ function(bandlimit_header_checks)
         set(units)
         foreach(header IN LISTS headers)
             string(REGEX REPLACE "\\.h$" ".cpp" source ${PROJECT_SOURCE_DIR}/${header})
-            if(EXISTS ${source} AND NOT source MATCHES "_test\\.cpp$" AND NOT room STREQUAL "apps")
+            if(EXISTS ${source} AND NOT source MATCHES "_test\\.cpp$")
                 continue()
             endif()
             set(unit ${PROJECT_BINARY_DIR}/headers/${header}.cpp)
