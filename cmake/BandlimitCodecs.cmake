@@ -13,6 +13,7 @@ function(bandlimit_codecs name)
     target_link_options(${target} INTERFACE LINKER:-u,bandlimit_${name}_codecs)
     bandlimit_options(${target})
     bandlimit_precompile(${target})
+    bandlimit_fuzzed(${target})
     set_target_properties(${target} PROPERTIES BANDLIMIT_LIBRARIES "${ARGN}")
     target_link_libraries(bandlimit_io INTERFACE
         $<BUILD_INTERFACE:$<$<NOT:$<BOOL:$<TARGET_PROPERTY:BANDLIMIT_LOADS_CODECS>>>:${target}>>

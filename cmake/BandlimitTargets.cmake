@@ -30,6 +30,13 @@ function(bandlimit_options target)
     endif()
 endfunction()
 
+# bandlimit_fuzzed(TARGET): a library that fuzzers explore: what its code runs through guides them.
+function(bandlimit_fuzzed target)
+    if(BANDLIMIT_FUZZ)
+        target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
+endfunction()
+
 # What most files include, compiled once for all libraries.
 set(BANDLIMIT_STANDARD_HEADERS <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory> <numeric> <optional>
     <span> <stdexcept> <string> <utility> <variant> <vector>)
