@@ -81,7 +81,8 @@ std::vector<double> default_positions(double radius) {
 std::vector<double> phases_of(const Options& o) {
     const std::vector<double> phases = numbers_or("--phase", o.phase, {0, 0.25, 0.5, 0.75});
     for (const double p : phases)
-        if (!(p >= 0 && p < 1)) throw UsageError(fmt::format("--phase: {} is not in [0, 1); as 0,1/6,1/3,1/2", p));
+        if (!(p >= 0 && p < 1))
+            throw UsageError(fmt::format("--phase: {} is not in [0, 1); use e.g. 0,1/6,1/3,1/2", p));
     return phases;
 }
 

@@ -165,7 +165,7 @@ void check_rule(const Rule& rule) {
 }
 
 Rule read_rule(const json& object, const fs::path& folder, const std::string& name) {
-    if (!object.is_object()) fail_file(name, "is no object; write {\"match\": \"*_n.png\", \"role\": \"normal\"}");
+    if (!object.is_object()) fail_file(name, "is not an object; write {\"match\": \"*_n.png\", \"role\": \"normal\"}");
     Rule rule;
     for (const auto& [key, value] : object.items()) {
         try {

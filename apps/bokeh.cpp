@@ -29,7 +29,7 @@ void check(const Options& o) {
     if (!(o.radius >= 0.5 && o.radius <= 1000))
         throw UsageError(fmt::format("--radius: {} is out of range; pass 0.5 to 1000 pixels", o.radius));
     if (!(o.gamma >= 0.1 && o.gamma <= 16))
-        throw UsageError(fmt::format("--hdr: {} is out of range; pass 0.1 to 16, as 7", o.gamma));
+        throw UsageError(fmt::format("--hdr: {} is out of range; pass 0.1 to 16, e.g. 7", o.gamma));
     if (o.components > 0 && o.shape_text() != "disc:1")
         throw UsageError(fmt::format("--components: stand for a disc, not for \"{}\"; use --rank", o.shape));
     if (!o.is_image()) parse_shape(o.shape_text(), 64);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <string_view>
 #include <vector>
 
@@ -48,14 +49,14 @@ std::string reworded(const CLI::ParseError& error) {
     const std::string words = error.what();
     if (is_a<CLI::ValidationError>(error)) return words;  // of our own validators
     if (is_a<CLI::RequiredError>(error)) return parted(words, " is required").first + " is missing";
-    if (is_a<CLI::ExtrasError>(error)) return "\"" + parted(words, " not expected: ").second + "\" has no place here";
+    if (is_a<CLI::ExtrasError>(error)) return "unexpected argument \"" + parted(words, " not expected: ").second + "\"";
     if (is_a<CLI::RequiresError>(error)) {
         const auto [option, other] = parted(words, " requires ");
         return fmt::format("{} works only with {}", option, other);
     }
     if (is_a<CLI::ExcludesError>(error)) {
         const auto [option, other] = parted(words, " excludes ");
-        return fmt::format("{} and {} do not go together", option, other);
+        return fmt::format("{} and {} cannot be used together", option, other);
     }
     if (is_a<CLI::ConversionError>(error) && words.starts_with("Could not convert: ")) {
         const auto [option, value] = parted(parted(words, "convert: ").second, " = ");
@@ -138,13 +139,15 @@ void Verb::example(const std::string& text) const { app_->footer("Example:\n  " 
 void Verb::on(std::function<void()> selected) const { app_->callback(std::move(selected)); }
 
 std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
-    std::string bytes = text;
+    std::string digits = text;
     try {
-        if (CLI::AsSizeValue(false)(bytes).empty() && !bytes.starts_with('-') && std::stoull(bytes) >= 1)
-            return std::stoull(bytes);
-    } catch (const CLI::Error&) {  // of the unit
+        const bool has_known_unit = CLI::AsSizeValue(false)(digits).empty();  // also multiplies by it
+        std::uint64_t bytes = 0;
+        const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), bytes);
+        if (has_known_unit && status == std::errc{} && end == digits.data() + digits.size() && bytes >= 1) return bytes;
+    } catch (const CLI::Error&) {  // an unknown unit
     }
-    throw UsageError(fmt::format("{}: \"{}\" is not an amount of memory; write it as 512MB or 4GB", option, text));
+    throw UsageError(fmt::format("{}: \"{}\" is not an amount of memory; use e.g. 512MB or 4GB", option, text));
 }
 
 CommandLine::CommandLine(const std::string& version)

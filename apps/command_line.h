@@ -21,8 +21,8 @@ struct UsageError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// An option of a verb. A handle; the command line owns what it refers to. Those that say something of the option
-/// return it.
+/// An option of a verb: a handle, valid as long as its CommandLine. What changes an option returns it, so that calls
+/// chain.
 class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
@@ -30,7 +30,7 @@ public:
     Option type_name(const std::string& name) const;  ///< what stands for its value in the help
     Option description(const std::string& text) const;
     Option required() const;
-    /// For numbers: refuses others than `least` to `most`.
+    /// For numbers: accepts only `least` to `most`, both included.
     Option in_range(int least, int most) const;
     Option in_range(double least, double most) const;
     Option needs(Option other) const;
@@ -43,13 +43,13 @@ private:
     CLI::Option* option_;
 };
 
-/// A verb, a subcommand of one, or the program. A handle, as Option.
+/// A verb, a subcommand of one, or the program itself: a handle, as Option is.
 class Verb {
 public:
     explicit Verb(CLI::App* app) : app_(app) {}
 
-    /// Adds an option that sets `target`, which must outlive the parsing: a std::string, int, std::uint64_t, double, an
-    /// optional of one of them, or a vector of strings.
+    /// Adds an option that sets `target`, which must outlive the parsing: a std::string, int, std::uint64_t, double,
+    /// std::optional<int>, std::optional<double> or std::vector<std::string>. Others do not link.
     template <class T>
     Option add_option(const std::string& name, T& target, const std::string& help) const;
     /// Adds an option that calls `set` with its value: a std::string, int or double. It may throw UsageError, or Error.
@@ -60,10 +60,9 @@ public:
     Option option(const std::string& name) const;  ///< one that was added
 
     Verb add_subcommand(const std::string& name, const std::string& summary) const;
-    /// Makes a verb that has all its subcommands take exactly one of them; the error lists them, each of which is a
-    /// `noun`.
+    /// Requires exactly one of the subcommands added so far; the error lists them and calls each a `noun`.
     void require_one_subcommand(const std::string& noun) const;
-    /// Shows a command line that works as pasted, or several, each on a line that begins with two blanks but the first.
+    /// Adds an example to the help: a command line that works as pasted. Further lines begin with two blanks.
     void example(const std::string& text) const;
     /// Calls `selected` when the command line names this verb and is parsed.
     void on(std::function<void()> selected) const;
@@ -72,7 +71,7 @@ private:
     CLI::App* app_;
 };
 
-/// "512MB", "4G": a number of bytes, or of a unit of 1024 or its powers. Throws UsageError, naming the option.
+/// "512MB" or "4G": bytes, at least 1; units are powers of 1024. Throws UsageError, naming the option.
 std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 
 /// What follows the name of the program on the command line.
@@ -82,7 +81,7 @@ public:
     ~CommandLine();
 
     Verb program() const;  ///< whose subcommands are the verbs
-    /// Sets what the options set, and calls what was given to Verb::on().
+    /// Sets the targets of options, and calls what was given to Verb::on().
     /// returns  the text to print instead, where help or the version is asked for
     /// throws   UsageError; and what the functions of options throw
     std::optional<std::string> parse(std::span<const char* const> arguments);

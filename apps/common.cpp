@@ -52,7 +52,7 @@ Option add_edge(Verb verb, std::optional<Edge>& edge) {
 Option add_tiles(Verb verb, int& tile) {
     return verb
         .add_option("--tiles", tile,
-                    "Store square tiles of N pixels a side, a multiple of 16 up to 4096, as 256 (TIFF and EXR);\n"
+                    "Store square tiles of N pixels a side, a multiple of 16 up to 4096, e.g. 256 (TIFF and EXR);\n"
                     "default: rows")
         .in_range(1, 4096)
         .type_name("N");
@@ -82,7 +82,7 @@ Shares shares_of(Parallel parallel) {
 Size parse_size(const std::string& option, const std::string& text) {
     const auto refuse = [&]() -> Size {
         throw UsageError(fmt::format(
-            "{}: \"{}\" is not a size; write WIDTHxHEIGHT, as 1920x1080, each from 1 to 2147483647", option, text));
+            "{}: \"{}\" is not a size; write WIDTHxHEIGHT, e.g. 1920x1080, each from 1 to 2147483647", option, text));
     };
     Size size;
     const char* const end = text.data() + text.size();

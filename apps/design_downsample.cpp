@@ -36,7 +36,7 @@ void set_weighting(RateGoal& goal, const std::string& text) {
     const std::vector<double> weights = parse_numbers("--weighting", text);
     if (weights.size() != 2)
         throw UsageError("--weighting: \"" + text +
-                         "\" is not two numbers; pass those of pass band and stop band, as 1,4");
+                         "\" is not two numbers; pass those of pass band and stop band, e.g. 1,4");
     goal.pass_weight = weights[0], goal.stop_weight = weights[1];
 }
 
@@ -292,7 +292,7 @@ void add_design_downsample(const DesignVerb& design) {
            "--weighting", [o](const std::string& s) { set_weighting(o->goal, s); },
            "How squared errors in the pass band and in the stop band count; default 1,1")
         .type_name("PASS,STOP");
-    app.add_option("--max-gain", o->goal.max_gain, "The most that any frequency may be raised to, as 1.05")
+    app.add_option("--max-gain", o->goal.max_gain, "The most that any frequency may be raised to, e.g. 1.05")
         .type_name("G");
     app.add_flag("--non-negative", o->goal.non_negative, "No weights below 0");
     app.add_flag("--curve", o->curve, "Print errors by number of fetches instead of the fetches");

@@ -99,11 +99,12 @@ void add_design_kernel(const DesignVerb& verb) {
     app.add_flag("--interpolating", o->options.interpolating, "1 at 0 and 0 at the other samples");
     app.add_option("--for", o->use, "grow (or stay), the default, or shrink: which frequencies disturb how much")
         .type_name("USE");
-    app.add_option("--response", o->response, "ideal, the default, or a kernel whose response is imitated, as lanczos3")
+    app.add_option("--response", o->response,
+                   "ideal, the default, or a kernel whose response is imitated, e.g. lanczos3")
         .type_name("KERNEL");
     app.add_option("--slope", o->slope, "Pictures have the power spectrum f^-A, 0 (white) to 2 (edges); default 2")
         .type_name("A");
-    app.add_option("--max-overshoot", o->max_overshoot, "Bound of ringing at a unit step, as 0.1; default none")
+    app.add_option("--max-overshoot", o->max_overshoot, "Bound of ringing at a unit step, e.g. 0.1; default none")
         .type_name("V");
 }
 

@@ -267,9 +267,9 @@ void add_design_separable(const DesignVerb& verb) {
                    "Terms; default: those that hold 99.9 % of a shape's energy, those above the noise of an image")
         .type_name("N");
     app.add_option("--non-negative", o->loss.non_negative,
-                   "What a negative weight costs beside squares, as 0.5; default 0")
+                   "What a negative weight costs beside squares, e.g. 0.5; default 0")
         .type_name("W");
-    app.add_option("--keep-zeros", o->loss.keep_zeros, "What a weight costs where the kernel is 0, as 0.3; default 0")
+    app.add_option("--keep-zeros", o->loss.keep_zeros, "What a weight costs where the kernel is 0, e.g. 0.3; default 0")
         .type_name("W");
     app.add_flag("--optimise,--optimize", o->optimise,
                  "Lower the loss: the mean of squares and what these two add to it");

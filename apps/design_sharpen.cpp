@@ -66,9 +66,10 @@ void add_design_sharpen(const DesignVerb& verb) {
         verb, "sharpen", "Taps that undo what a kernel takes from the pass band",
         "bandlimit design sharpen --undo bspline --taps 7 --plot sharpen.svg -o sharpen.json", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app.add_option("--undo", o->undo,
-                   "Kernel whose droop is undone, as bspline (analyze --list shows all): sharpen before enlarging by\n"
-                   "it, or after shrinking by it")
+    app.add_option(
+           "--undo", o->undo,
+           "Kernel whose droop is undone, e.g. bspline (analyze --list shows all): sharpen before enlarging by\n"
+           "it, or after shrinking by it")
         .required()
         .type_name("KERNEL");
     app.add_option("--taps", o->options.taps, "How many, an odd number from 3 to 63; default 7").type_name("N");
@@ -78,7 +79,7 @@ void add_design_sharpen(const DesignVerb& verb) {
     app.add_option("--max-gain", o->max_gain, "Bound of the gain at all frequencies, above 1; default none")
         .type_name("G");
     app.add_option("--phase", o->phase,
-                   "Undo the weights at one distance from the sample, 0 to 1, as 0 for the B-spline's prefilter;\n"
+                   "Undo the weights at one distance from the sample, 0 to 1; 0 gives the B-spline's prefilter;\n"
                    "default: the mean over all, the kernel's spectrum")
         .type_name("P");
 }

@@ -263,7 +263,7 @@ void add_batch(Verb verb, const std::shared_ptr<Options>& o) {
         .type_name("FILE");
     verb.add_option_function<std::string>(
             "--memory", [o](const std::string& s) { o->batch.memory = parse_bytes("--memory", s); },
-            "Memory for the pictures of a batch that are worked on at a time, as 4GB; default: a quarter of\n"
+            "Memory for the pictures of a batch that are worked on at a time, e.g. 4GB; default: a quarter of\n"
             "what is available; one picture is always worked on")
         .needs(batch)
         .type_name("SIZE");

@@ -35,7 +35,7 @@ void set_edge(MipsRecipe& recipe, const std::string& text) {
 void set_threshold(MipsRecipe& recipe, double threshold) {
     if (!(threshold > 0 && threshold <= 1))
         throw UsageError(
-            fmt::format("--alpha-threshold: {} is out of range; pass more than 0 and at most 1, as 0.5", threshold));
+            fmt::format("--alpha-threshold: {} is out of range; pass more than 0 and at most 1, e.g. 0.5", threshold));
     recipe.alpha_threshold = threshold;
 }
 

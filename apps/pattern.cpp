@@ -216,7 +216,7 @@ private:
 
 void add_common(Program& program, Verb kind, const std::shared_ptr<Options>& o) {
     kind.add_option("OUT", o->out, "Image to write; the extension names the format").required();
-    kind.add_option("--size", o->size, "Size in pixels, as 512x512").required().type_name("WxH");
+    kind.add_option("--size", o->size, "Size in pixels, e.g. 512x512").required().type_name("WxH");
     kind.add_option("--antialias", o->antialias,
                     "none (default): the value at the centre of each pixel; exact: the mean over each pixel,\n"
                     "where a closed form is known (all but siemens and noise); or a kernel, supersampled")

@@ -37,7 +37,7 @@ Rectangle parse_region(const std::string& text) {
     const std::vector<double> n = parse_numbers("--region", text);
     if (n.size() != 4 || n[2] <= 0 || n[3] <= 0)
         throw UsageError(fmt::format(
-            "--region: \"{}\" is not a region; write X,Y,WIDTH,HEIGHT in source pixels, as 10,20,300,200", text));
+            "--region: \"{}\" is not a region; write X,Y,WIDTH,HEIGHT in source pixels, e.g. 10,20,300,200", text));
     return {n[0], n[1], n[2], n[3]};
 }
 
@@ -59,7 +59,7 @@ void check(const Options& o) {
             "--height H");
     if (!o.size.empty()) parse_size("--size", o.size);
     if (!o.scale.empty() && !(parse_number("--scale", o.scale) > 0))
-        throw UsageError("--scale: a size cannot be 0 or less; pass a number above 0, as 0.5 or 2");
+        throw UsageError("--scale: a size cannot be 0 or less; pass a number above 0, e.g. 0.5 or 2");
     if (!(o.antiring >= 0 && o.antiring <= 1))  // a range check of the parser lets NaN pass
         throw UsageError(fmt::format("--antiring: {} is out of range; pass 0 to 1", o.antiring));
     if (!o.region.empty()) parse_region(o.region);
@@ -244,7 +244,7 @@ void add_resize(Program& program) {
     verb.add_option("--height", o->height, "New height; the width follows unless given")
         .in_range(1, 2147483647)
         .type_name("H");
-    verb.add_option("--scale", o->scale, "New size as a multiple of the old, as 0.5 or 1/3").type_name("S");
+    verb.add_option("--scale", o->scale, "New size as a multiple of the old, e.g. 0.5 or 1/3").type_name("S");
     verb.add_option("--kernel", o->kernel,
                     "Kernel (bandlimit analyze --list), or a taps.json; auto: shrink3 along an axis that shrinks,\n"
                     "grow3 along one that grows or keeps its size")

@@ -23,7 +23,7 @@ protected:
 TEST_F(TargetsOfTheProgram, AWrongOneIsOneLineAndExitCode2) {
     const std::string line = "pattern checker out.png --size 8x8";
     EXPECT_TRUE(fails(2, run_with("nonsense", line),
-                      "BANDLIMIT_TARGETS is \"nonsense\", which is no set of instructions; set it to scalar"));
+                      "BANDLIMIT_TARGETS is \"nonsense\", which is not an instruction set; set it to scalar"));
     const bool is_arm = supported_targets().back() == Target::neon;
     EXPECT_TRUE(
         fails(2, run_with(is_arm ? "avx2" : "neon", line), "which this machine or build lacks; set it to scalar"));

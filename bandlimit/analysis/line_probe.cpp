@@ -34,7 +34,8 @@ Ratio ratio_of(double scale) {
         const Ratio ratio = scale < 1 ? Ratio{other, larger} : Ratio{larger, other};
         if (other > 0 && std::abs(ratio.scale() - scale) <= 1e-6 * scale) return ratio;
     }
-    fail("ratio_of: scale = ", scale, " is no ratio of numbers up to ", largest_term, "; pass one, as 1/2 or 37/100");
+    fail("ratio_of: scale = ", scale, " is not a ratio of numbers up to ", largest_term,
+         "; pass one, e.g. 1/2 or 37/100");
 }
 
 LineProbe line_probe(const Ratio& ratio, double reach) {

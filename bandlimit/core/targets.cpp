@@ -52,7 +52,7 @@ Target target_of_environment() {
     const bool is_known =
         std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.name == value; });
     fail("the environment variable ", variable, " is \"", value, "\", which ",
-         is_known ? "this machine or build lacks" : "is no set of instructions", "; set it to ", listed(supported),
+         is_known ? "this machine or build lacks" : "is not an instruction set", "; set it to ", listed(supported),
          ", or unset it for the widest");
 }
 

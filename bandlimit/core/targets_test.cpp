@@ -100,7 +100,7 @@ TEST_F(TargetVariable, IsAnErrorEachTimeWhereItNamesNoTarget) {
     for (const char* wrong : {"nonsense", "AVX2", "sse4,avx2"})
         EXPECT_EXIT(say_target_with(wrong), testing::ExitedWithCode(0),
                     message("\\[the environment variable BANDLIMIT_TARGETS is \"", wrong,
-                            "\", which is no set of instructions; set it to scalar"));
+                            "\", which is not an instruction set; set it to scalar"));
 }
 
 TEST_F(TargetVariable, IsAnErrorWhereTheMachineLacksTheTarget) {

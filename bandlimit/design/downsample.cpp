@@ -81,7 +81,7 @@ SparseWeights downsample_weights(int count, double threshold, const RateGoal& go
     check_goal("downsample_weights", goal);
     check_count("downsample_weights", count, most_side, goal);
     if (goal.upsample) fail("downsample_weights: the goal enlarges; pass one that shrinks");
-    if (!(threshold >= 0)) fail("downsample_weights: threshold = ", threshold, "; pass 0 or more, as 0.02");
+    if (!(threshold >= 0)) fail("downsample_weights: threshold = ", threshold, "; pass 0 or more, e.g. 0.02");
     const SymmetricGrid grid(2, origin_of(count), (count + 1) / 2, goal);
     std::vector<bool> kept(grid.size(), true);
     const std::vector<double> all = best_weights(grid, kept, goal);
@@ -93,7 +93,7 @@ SparseWeights downsample_weights(int count, double threshold, const RateGoal& go
         if (!kept[u]) dropped[u] = 0;
         sum += grid.images(u) * dropped[u];
     }
-    if (!(sum > 0)) fail("downsample_weights: threshold = ", threshold, " leaves no weights; pass less, as 0.02");
+    if (!(sum > 0)) fail("downsample_weights: threshold = ", threshold, " leaves no weights; pass less, e.g. 0.02");
     for (double& w : dropped) w /= sum;
     const std::vector<double> optimized = best_weights(grid, kept, goal);
     if (optimized.empty()) fail_gain("downsample_weights", goal);

@@ -311,7 +311,7 @@ void check_curve(const char* function, int most, const RateGoal& goal, const Fet
              "; pass ", options.taps + 1);
     if (!(options.threshold >= 0) || (options.threshold > 0 && options.taps == 0))
         fail(function, ": threshold = ", options.threshold,
-             "; pass 0, or with taps what is the least weight that they keep, as 0.02");
+             "; pass 0, or with taps what is the least weight that they keep, e.g. 0.02");
     if (goal.upsample && (options.layout == FetchLayout::cross || options.threshold > 0))
         fail(function, ": filters that enlarge have no ",
              options.threshold > 0 ? "threshold; pass 0" : "cross; pass free or square");

@@ -143,7 +143,7 @@ bool may(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, path.c_s
 }  // namespace
 
 void check_output_path(const std::string& path) {
-    if (path.empty()) fail_file("\"\"", "is no file name; name the output");
+    if (path.empty()) fail_file("\"\"", "is not a file name; name the output");
     std::error_code error;
     const fs::path target = behind_links(path);
     const fs::file_status status = fs::status(target, error);

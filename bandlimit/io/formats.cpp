@@ -113,7 +113,7 @@ void check_tile(const FormatAbilities& format, int tile) {
     if (!format.tiles) fail("tiles of ", tile, ": ", format.name, " files store rows; choose TIFF or EXR");
     if (tile < multiple || tile > largest || tile % multiple != 0)
         fail("tiles of ", tile, " pixels do not exist; pass a multiple of ", multiple, " from ", multiple, " to ",
-             largest, ", as 256, or 0 for none");
+             largest, ", e.g. 256, or 0 for none");
 }
 
 std::string format_of(std::span<const unsigned char> head, const std::string& path) {

@@ -70,14 +70,14 @@ const json* member(const json& object, const char* key) {
 
 std::vector<double> numbers(const json* list, const std::string& name, const char* what) {
     if (!list || !list->is_array() || list->empty() || list->size() > most_weights)
-        fail_file(name, "\"", what, "\" is no list of 1 to ", most_weights, " numbers; correct it");
+        fail_file(name, "\"", what, "\" is not a list of 1 to ", most_weights, " numbers; correct it");
     std::vector<double> result;
     for (const json& value : *list) result.push_back(number(value, name, what));
     return result;
 }
 
 Taps parse_1d(const json& object, int factor, const std::string& name) {
-    if (!object.is_object()) fail_file(name, "\"taps\" is no object; write {\"first\": ..., \"weights\": [...]}");
+    if (!object.is_object()) fail_file(name, "\"taps\" is not an object; write {\"first\": ..., \"weights\": [...]}");
     const json *first = member(object, "first"), *weights = member(object, "weights");
     if (!first || !weights) fail_file(name, "\"taps\" lacks \"first\" or \"weights\"; add them");
     return {integer(*first, -largest_first, largest_first, name, "first"), numbers(weights, name, "weights"), factor};
@@ -90,9 +90,9 @@ auto list_of(const json& root, const char* key, std::size_t most, const std::str
     const json* list = member(root, key);
     if (!list) return result;
     if (!list->is_array() || list->size() > most)
-        fail_file(name, "\"", key, "\" is no list of at most ", most, " entries; correct it");
+        fail_file(name, "\"", key, "\" is not a list of at most ", most, " entries; correct it");
     for (const json& entry : *list) {
-        if (!entry.is_object()) fail_file(name, "\"", key, "\" holds something that is no object; correct it");
+        if (!entry.is_object()) fail_file(name, "\"", key, "\" holds something that is not an object; correct it");
         result.push_back(parse_one(entry));
     }
     return result;

@@ -35,7 +35,7 @@ std::vector<double> number_parameters(const NameParts& parts, std::string_view k
     std::vector<double> numbers;
     for (const std::string_view word : parts.parameters) {
         const auto value = parse_number(word);
-        if (!value) fail(kind, " \"", parts.whole, "\": \"", word, "\" is no number; write ", form);
+        if (!value) fail(kind, " \"", parts.whole, "\": \"", word, "\" is not a number; use ", form);
         numbers.push_back(*value);
     }
     return numbers;

@@ -149,7 +149,7 @@ std::string form_of(const Shape& shape, bool sized) {
         const std::size_t first = result.find(':'), second = result.find(':', first + 1);
         return result.erase(first, second - first);
     };
-    return written(shape.info.name) + ", as " + written(shape.info.example);
+    return written(shape.info.name) + ", e.g. " + written(shape.info.example);
 }
 
 /// Throws Error unless the parameters after SIZE, `p`, are as `shape` allows.

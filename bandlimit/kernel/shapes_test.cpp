@@ -120,8 +120,9 @@ TEST(Shapes, EveryExampleWorks) {
 }
 
 TEST(Shapes, ErrorsSayWhatToWrite) {
-    EXPECT_EQ(error_of("disc:50"), "shape \"disc:50\": 1 parameters; write disc:SIZE:LIMIT, as disc:50:0.8");
-    EXPECT_EQ(error_of("disc:50:x"), "shape \"disc:50:x\": \"x\" is no number; write disc:SIZE:LIMIT, as disc:50:0.8");
+    EXPECT_EQ(error_of("disc:50"), "shape \"disc:50\": 1 parameters; write disc:SIZE:LIMIT, e.g. disc:50:0.8");
+    EXPECT_EQ(error_of("disc:50:x"),
+              "shape \"disc:50:x\": \"x\" is not a number; use disc:SIZE:LIMIT, e.g. disc:50:0.8");
     EXPECT_EQ(error_of("disc:50:-1"), "shape \"disc:50:-1\": LIMIT = -1; pass a number above 0");
     EXPECT_EQ(error_of("disc:1:1"), "shape \"disc:1:1\": SIZE = 1; pass a whole number from 2 to 4096");
     EXPECT_EQ(error_of("disc:nan:1"), "shape \"disc:nan:1\": SIZE = nan; pass a whole number from 2 to 4096");
@@ -134,7 +135,7 @@ TEST(Shapes, ErrorsSayWhatToWrite) {
         parse_shape("disc:50:0.8", 51);
         FAIL();
     } catch (const Error& e) {
-        EXPECT_STREQ(e.what(), "shape \"disc:50:0.8\": 2 parameters; write disc:LIMIT, as disc:0.8");
+        EXPECT_STREQ(e.what(), "shape \"disc:50:0.8\": 2 parameters; write disc:LIMIT, e.g. disc:0.8");
     }
 }
 

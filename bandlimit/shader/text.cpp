@@ -77,7 +77,7 @@ void check_shader_name(const std::string& name) {
     if (!plain || name.find("__") != std::string::npos || name.ends_with('_') || name.starts_with("gl_") ||
         std::find(taken.begin(), taken.end(), name) != taken.end())
         fail("shader: \"", name,
-             "\" is no name for a function; pass small letters, digits and single underscores, as blur_25");
+             "\" is not a name for a function; pass small letters, digits and single underscores, e.g. blur_25");
 }
 
 std::string number(double value, int digits) {
