@@ -141,10 +141,12 @@ void Verb::on(std::function<void()> selected) const { app_->callback(std::move(s
 std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
     std::string digits = text;
     try {
-        const bool has_known_unit = CLI::AsSizeValue(false)(digits).empty();  // also multiplies by it
+        const bool is_known = text.find_first_of("0123456789") == 0 &&  // a unit alone would be one of it
+                              CLI::AsSizeValue(false)(digits).empty();  // multiplies by the unit
         std::uint64_t bytes = 0;
-        const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), bytes);
-        if (has_known_unit && status == std::errc{} && end == digits.data() + digits.size() && bytes >= 1) return bytes;
+        const char* const end = digits.data() + digits.size();
+        // It stays 0 where the number does not fit.
+        if (is_known && std::from_chars(digits.data(), end, bytes).ptr == end && bytes >= 1) return bytes;
     } catch (const CLI::Error&) {  // an unknown unit
     }
     throw UsageError(fmt::format("{}: \"{}\" is not an amount of memory; use e.g. 512MB or 4GB", option, text));

@@ -278,9 +278,6 @@ TEST(Mips, WhatTheCommandLineAloneShowsToBeWrongIsExitCode2) {
              {"mips --batch in out --format png", "ktx2 or dds"},
              {"mips --batch in out --cube", "--cube"},
              {"mips --batch in out --memory 4X", "4X"},
-             {"mips --batch in out --memory 0", "is not an amount of memory"},
-             {"mips --batch in out --memory -5", "is not an amount of memory"},
-             {"mips --batch in out --memory 18446744073709551616", "is not an amount of memory"},
          })
         EXPECT_TRUE(fails(2, shell(line), word)) << "bandlimit " << line;
     EXPECT_TRUE(shell.files().empty());
