@@ -49,7 +49,6 @@ std::string reworded(const CLI::ParseError& error) {
     const std::string words = error.what();
     if (is_a<CLI::ValidationError>(error)) return words;  // of our own validators
     if (is_a<CLI::RequiredError>(error)) return parted(words, " is required").first + " is missing";
-    if (is_a<CLI::ExtrasError>(error)) return "unexpected argument \"" + parted(words, " not expected: ").second + "\"";
     if (is_a<CLI::RequiresError>(error)) {
         const auto [option, other] = parted(words, " requires ");
         return fmt::format("{} works only with {}", option, other);
@@ -71,7 +70,9 @@ std::string reworded(const CLI::ParseError& error) {
 }
 
 std::string explanation(const CLI::ParseError& error, const CLI::App& cli) {
-    const std::string words = reworded(error);
+    const bool has_extras = is_a<CLI::ExtrasError>(error);  // which lists all of them, the last first
+    const std::string words =
+        has_extras ? fmt::format("unexpected argument \"{}\"", cli.remaining(true).front()) : reworded(error);
     return words + (words.find("; ") == words.npos ? "; see " : ", or see ") + help_of(cli);
 }
 

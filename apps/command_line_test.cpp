@@ -102,6 +102,11 @@ TEST(Options, NeedAndExcludeEachOther) {
     EXPECT_NE(error_of({"--without", "--first"}).find("cannot be used together"), std::string::npos);
 }
 
+TEST(Options, TheFirstUnexpectedArgumentIsNamed) {
+    EXPECT_EQ(OneVerb().error_of({"one", "two"}), "unexpected argument \"one\"; see bandlimit do --help");
+    EXPECT_EQ(OneVerb().error_of({"--one", "two"}), "unexpected argument \"--one\"; see bandlimit do --help");
+}
+
 TEST(Options, HelpAndVersionAreTextToPrint) {
     OneVerb v;
     int selected = 0;
