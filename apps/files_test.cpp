@@ -168,7 +168,7 @@ TEST(Files, AuditedCommandsGetPathsThatNoShellTakesApart) {
     fs::create_directory(shell / "a$(echo)b");  // nothing in it but what names have, and the dollar
     EXPECT_TRUE(succeeds(shell.start({"audit", "bandlimit resize {in} {out} --size {width}x{height}", "--scales", "2",
                                       "--grey", "--keep", "a$(echo)b"})));
-    EXPECT_TRUE(fails(2, shell("audit 'x {in} {width} -o {out}.png'"), "--format"));
+    EXPECT_TRUE(fails(2, shell("audit 'x {in} {width} -o {out}.png'"), "option format"));
 }
 
 }  // namespace

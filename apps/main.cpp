@@ -11,9 +11,9 @@
 #include <exception>
 #include <new>
 
-#include "apps/command.h"
 #include "apps/program.h"
 #include "bandlimit/io/image_file.h"
+#include "bandlimit/job/command.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define REPORTS_OF_SANITIZERS
@@ -32,7 +32,7 @@ std::FILE* real_stderr = nullptr;  ///< for those that cannot be given it; none 
 std::FILE* err() { return real_stderr ? real_stderr : stderr; }
 
 extern "C" void stop(int signal_number) {
-    app::abandon_commands();
+    job::abandon_commands();
     remove_unfinished_files();
     std::signal(signal_number, SIG_DFL);
     std::raise(signal_number);

@@ -8,9 +8,10 @@
 namespace bandlimit {
 namespace {
 
-const std::array verbs{"resize", "convolve", "bokeh", "mips", "pattern", "compare", "analyze", "audit", "info", "tour"};
-const std::array kinds{"zoneplate", "siemens", "chirp", "edge",    "stripes", "checker",
-                       "box",       "disc",    "ramp",  "impulse", "line",    "noise"};
+const std::array kinds{"zoneplate", "siemens", "chirp", "edge",  "stripes", "checker", "box",   "disc",      "ramp",
+                       "impulse",   "line",    "noise", "fence", "glyphs",  "plane",   "mover", "highlight", "foliage"};
+const std::array verbs{"resize", "convolve", "bokeh",   "mips",  "pattern", "supersample", "temporal",
+                       "raster", "compare",  "analyze", "audit", "info",    "tour"};
 
 /// A folder in which examples work as pasted.
 void add_examples(const Shell& shell) {
@@ -26,13 +27,16 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
         std::string line, word;
     };
     for (const auto& [line, word] : {
-             Case{"", "resize, convolve, bokeh, mips, pattern, compare, analyze, design, audit, info, tour"},
+             Case{"",
+                  "resize, convolve, bokeh, mips, pattern, supersample, temporal, raster, compare, analyze, design, "
+                  "audit, "
+                  "info, tour"},
              {"frob", "\"frob\" is not a verb"},
              {"--bogus " + resize + "--scale 1", "--bogus"},
              {"resize", "IN"},
              {resize, "--size"},
-             {resize + "--size 8x8 --scale 1", "one of"},
-             {resize + "--size 8x8 --width 8", "one of"},
+             {resize + "--size 8x8 --scale 1", "exactly once"},
+             {resize + "--size 8x8 --width 8", "exactly once"},
              {resize + "--size 0x0", "0x0"},
              {resize + "--size 8x", "8x"},
              {resize + "--size 99999999999x1", "99999999999x1"},

@@ -8,16 +8,17 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "apps/command.h"
-#include "apps/common.h"
+#include "apps/console/common.h"
 #include "bandlimit/core/targets.h"
+#include "bandlimit/job/command.h"
+#include "bandlimit/job/option_error.h"
 
 namespace bandlimit::app {
 namespace {
 
 /// A word as a shell reads it back; by $'...', which most do, where a terminal would not show it.
 std::string pasted(const std::string& word) {
-    if (visible(word) == word) return quoted(word);
+    if (visible(word) == word) return job::quoted(word);
     std::string escaped;
     for (const char c : word) (c == '\\' || c == '\'' ? escaped += '\\' : escaped) += c;
     return "$'" + visible(escaped) + "'";
@@ -29,6 +30,9 @@ void add_verbs(Program& program) {
     add_bokeh(program);
     add_mips(program);
     add_pattern(program);
+    add_supersample(program);
+    add_temporal(program);
+    add_raster(program);
     add_compare(program);
     add_analyze(program);
     add_design(program);
@@ -46,6 +50,8 @@ void parse(Program& program, std::span<const char* const> arguments) {
             return;
         }
         current_target();  // throws where BANDLIMIT_TARGETS holds none
+    } catch (const job::OptionError&) {
+        throw;
     } catch (const Error& e) {
         throw UsageError(e.what());
     }
@@ -70,6 +76,9 @@ int run(std::span<const char* const> arguments, const Streams& streams) noexcept
         return 0;
     } catch (const UsageError& e) {
         console.error(e.what());
+        return 2;
+    } catch (const job::OptionError& e) {  // jobs name options without the dashes
+        console.error((e.option.empty() ? "" : "--") + std::string(e.what()));
         return 2;
     } catch (const std::bad_alloc&) {
         console.error(no_memory);

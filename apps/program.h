@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "apps/console.h"
+#include "apps/console/console.h"
 
 namespace bandlimit::app {
 

@@ -1,5 +1,5 @@
 # bandlimit_embed_photographs(TARGET file...): compiles the bytes of files into TARGET, as embedded_photographs() of
-# apps/embedded.h, so that the program needs no file beside it.
+# apps/tour/embedded.h, so that the program needs no file beside it.
 function(bandlimit_embed_photographs target)
     set(source ${PROJECT_BINARY_DIR}/embedded_photographs.cpp)
     set(arrays)
@@ -16,7 +16,7 @@ function(bandlimit_embed_photographs target)
     endforeach()
     file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made by cmake/BandlimitEmbed.cmake.
-#include "apps/embedded.h"
+#include "apps/tour/embedded.h"
 
 namespace bandlimit::app {
 namespace {

@@ -74,10 +74,26 @@ function(bandlimit_vector_sources result)
     set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# bandlimit_component(NAME ROOMS room...): the library bandlimit::NAME of everything in these rooms but tests and
-# benchmarks, with its headers in the package. A room without files yet is an empty room.
+# bandlimit_public_headers(RESULT room): the headers of a room that are for users, by their path from the root: all but
+# those that say "Stability: inner".
+function(bandlimit_public_headers result room)
+    file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bandlimit/${room}/*.h)
+    list(FILTER headers EXCLUDE REGEX "_test\\.h$")
+    set(public)
+    foreach(header IN LISTS headers)
+        file(STRINGS ${PROJECT_SOURCE_DIR}/${header} mark REGEX "^// Stability: inner\\." LIMIT_COUNT 1)
+        if(NOT mark)
+            list(APPEND public ${header})
+        endif()
+    endforeach()
+    set(${result} ${public} PARENT_SCOPE)
+endfunction()
+
+# bandlimit_component(NAME ROOMS room... [OPTIONS option...] [PRECOMPILE header...]): the library bandlimit::NAME of
+# everything in these rooms but tests and benchmarks, with its headers in the package. A room without files yet is an
+# empty room. Options of its own go with precompiled headers of its own.
 function(bandlimit_component name)
-    cmake_parse_arguments(ARG "" "" "ROOMS" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "ROOMS;OPTIONS;PRECOMPILE" ${ARGN})
     set(target bandlimit_${name})
     add_library(${target})
     add_library(bandlimit::${name} ALIAS ${target})
@@ -93,9 +109,10 @@ function(bandlimit_component name)
             # pointers into scopes that have ended.
             set_source_files_properties(${vectors} PROPERTIES COMPILE_OPTIONS -fno-sanitize-address-use-after-scope)
         endif()
-        install(DIRECTORY ${PROJECT_SOURCE_DIR}/bandlimit/${room}
-            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit COMPONENT ${name}
-            FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
+        bandlimit_public_headers(headers ${room})
+        list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/)
+        install(FILES ${headers}
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bandlimit/${room} COMPONENT ${name})
         set_property(GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room} ${name})
     endforeach()
     set_property(GLOBAL APPEND PROPERTY BANDLIMIT_ROOMS ${ARG_ROOMS})
@@ -103,7 +120,8 @@ function(bandlimit_component name)
         $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(${target} PUBLIC cxx_std_20)
     bandlimit_options(${target})
-    bandlimit_precompile(${target})
+    target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
+    bandlimit_precompile(${target} ${ARG_PRECOMPILE})
     install(TARGETS ${target} EXPORT bandlimit_${name}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name})
@@ -114,15 +132,13 @@ endfunction()
 # The program: the file `bandlimit` at the root of the build directory. All of it but main() is the library
 # bandlimit_app, so that the tests run verbs in their own process.
 function(bandlimit_program)
-    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*.cpp)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*.cpp)
     list(FILTER sources EXCLUDE REGEX "_test\\.cpp$|/main\\.cpp$")
     find_package(CLI11 REQUIRED)
-    find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
-    find_library(XXHASH_LIBRARY xxhash REQUIRED)
     add_library(bandlimit_app STATIC ${sources})
     target_link_libraries(bandlimit_app
         PUBLIC bandlimit::core
-        PRIVATE bandlimit::design bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
+        PRIVATE bandlimit::job CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt ${XXHASH_LIBRARY})
     target_include_directories(bandlimit_app SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
     target_compile_definitions(bandlimit_app PRIVATE BANDLIMIT_VERSION="${PROJECT_VERSION}")
     include(BandlimitEmbed)
@@ -199,7 +215,7 @@ function(bandlimit_app_tests)
     if(NOT TARGET bandlimit)
         return()
     endif()
-    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*_test.cpp)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/*_test.cpp)
     bandlimit_test_program(apps 12 ${sources})
     target_link_libraries(test_apps PRIVATE bandlimit_app bandlimit::io nlohmann_json::nlohmann_json)
     target_compile_definitions(test_apps PRIVATE
@@ -226,6 +242,27 @@ function(bandlimit_consumer_tests)
     endforeach()
 endfunction()
 
+# All installed headers in one file, so that no two of them define the same name: part of every build with tests.
+function(bandlimit_headers_together)
+    get_property(rooms GLOBAL PROPERTY BANDLIMIT_ROOMS)
+    set(includes)
+    set(libraries)
+    foreach(room IN LISTS rooms)
+        bandlimit_public_headers(headers ${room})
+        foreach(header IN LISTS headers)
+            string(APPEND includes "#include \"${header}\"\n")
+        endforeach()
+        get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
+        list(APPEND libraries bandlimit::${component})
+    endforeach()
+    list(REMOVE_DUPLICATES libraries)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers_together.cpp CONTENT "${includes}")
+    add_library(headers_together OBJECT ${PROJECT_BINARY_DIR}/headers_together.cpp)
+    target_link_libraries(headers_together PRIVATE ${libraries})
+    bandlimit_options(headers_together)
+    target_compile_options(headers_together PRIVATE -O0 -g0)
+endfunction()
+
 # The target headers: each header in a translation unit of its own, with what its component gives to a consumer. But
 # x.h beside x.cpp, which scripts/check-includes has include it first, is compiled alone there where nothing is
 # precompiled.
@@ -238,13 +275,13 @@ function(bandlimit_header_checks)
     foreach(room IN LISTS rooms)
         if(room STREQUAL "apps")
             set(folder apps)
-            set(libraries bandlimit::design bandlimit::io CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+            set(libraries bandlimit::job CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
         else()
             set(folder bandlimit/${room})
             get_property(component GLOBAL PROPERTY BANDLIMIT_COMPONENT_OF_${room})
             set(libraries bandlimit::${component})
         endif()
-        file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.h)
+        file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.h)
         set(units)
         foreach(header IN LISTS headers)
             string(REGEX REPLACE "\\.h$" ".cpp" source ${PROJECT_SOURCE_DIR}/${header})
@@ -297,7 +334,8 @@ function(bandlimit_fuzzers)
         add_executable(fuzz_${name} ${source})
         set_target_properties(fuzz_${name} PROPERTIES
             OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
-        target_link_libraries(fuzz_${name} PRIVATE bandlimit::core $<TARGET_NAME_IF_EXISTS:bandlimit::io>)
+        target_link_libraries(fuzz_${name} PRIVATE bandlimit::core $<TARGET_NAME_IF_EXISTS:bandlimit::io>
+            $<TARGET_NAME_IF_EXISTS:bandlimit::job>)
         bandlimit_options(fuzz_${name})
         target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
         # What the fuzzer finds goes to the first folder; the project's own corpus is only read.

@@ -41,9 +41,10 @@ void check(Bytes bytes) {
     resize_bytes_scalar(banks, src.view(), 0, exact.view(), 0);
     const int cut = bytes.below(new_height + 1);
     const BytePlan plan = make_byte_plan(banks);
+    RunMonitor nobody;
     for (const auto& [begin, end] : {std::pair{0, cut}, {cut, new_height}})
         for_each_run(banks.y, begin, end, [&](int first, int last, bool fits) {
-            if (fits) resize_bytes(plan, src.view(), 0, fast.view(), 0, first, last);
+            if (fits) resize_bytes(plan, src.view(), 0, fast.view(), 0, first, last, nobody);
         });
     for (int c = 0; c < channels; ++c)
         for (int v = 0; v < new_height; ++v)

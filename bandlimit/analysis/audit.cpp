@@ -77,7 +77,7 @@ std::vector<Ratio> two_of(const std::vector<Ratio>& scales) {
 struct Measured {
     std::array<MeasuredBank, 2> banks;
     std::vector<Candidate> candidates;
-    std::array<std::vector<Fit>, 2> fits;  ///< of each candidate
+    std::array<std::vector<CandidateFit>, 2> fits;  ///< of each candidate
 };
 
 /// The two values of the line probe: 1/4 and 3/4 of the light, as near as codes come. Sums of |weights| up to 2 fit.
@@ -108,7 +108,7 @@ Measured fit_all(std::array<MeasuredBank, 2> banks) {
     Measured m{std::move(banks), {}, {}};
     m.candidates = all_candidates(m.banks[0].ratio);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        std::vector<Fit>& fits = m.fits[axis];
+        std::vector<CandidateFit>& fits = m.fits[axis];
         for (const Candidate& c : m.candidates) fits.push_back(best_fit(m.banks[axis], c, coarse_rows));
         std::vector<std::size_t> order(fits.size());
         std::iota(order.begin(), order.end(), std::size_t(0));
@@ -147,11 +147,11 @@ bool is_same_kernel(const Candidate& a, const Candidate& b) {
 
 struct Choice {
     KernelFinding finding;
-    Fit fit;
+    CandidateFit fit;
 };
 Choice choose(const Measured& m, std::size_t axis, const std::vector<double>& joint, std::optional<bool> separable) {
     const MeasuredBank& bank = m.banks[axis];
-    const std::vector<Fit>& fits = m.fits[axis];
+    const std::vector<CandidateFit>& fits = m.fits[axis];
     const double floor = noise_floor(bank);
     double best = 1e9;
     for (std::size_t c = 0; c < fits.size(); ++c) best = std::min(best, fits[c].residual);
@@ -189,7 +189,7 @@ Choice choose(const Measured& m, std::size_t axis, const std::vector<double>& jo
 /// Where no known kernel fits well, one with free parameters may.
 void try_parameters(const MeasuredBank& bank, Choice& choice) {
     if (choice.fit.residual <= std::max(0.012, 2 * noise_floor(bank))) return;
-    const Fitted fitted = fit_parameters(bank, choice.finding.candidate, choice.fit);
+    const FittedCandidate fitted = fit_parameters(bank, choice.finding.candidate, choice.fit);
     if (fitted.fit.residual > choice.fit.residual / 2) return;
     choice.finding.runner_up = described(choice.finding.candidate);
     choice.finding.runner_up_residual = choice.fit.residual;
@@ -205,7 +205,7 @@ AxisReport report_axis(const Measured& m, std::size_t axis, const std::vector<do
     try_parameters(bank, choice);
     AxisReport r;
     r.kernel = std::move(choice.finding);
-    const Fit fit = refined(bank, r.kernel.candidate, choice.fit);
+    const CandidateFit fit = refined(bank, r.kernel.candidate, choice.fit);
     r.kernel.residual = fit.residual;
     r.kernel.name = r.kernel.candidate.kernel.name;
     r.kernel.is_known = fit.residual <= std::max(known_residual, 3 * r.kernel.noise);

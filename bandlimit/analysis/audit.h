@@ -2,6 +2,7 @@
 //
 // All values are as stored: 0 to 1, a code over the largest code, or floats. Runs of the resizer are few, because each
 // may be the start of a program: three for a scale, two for light, two for alpha.
+// Stability: evolving.
 #pragma once
 #include <functional>
 #include <optional>
@@ -20,14 +21,14 @@ using ResizeFunction = std::function<Image<float>(View<const float> stored, int 
 struct AuditOptions {
     std::vector<Ratio> scales = {{1, 2}, {37, 100}, {2, 1}, {100, 37}};
     double code = 1.0 / 255;  ///< distance of two codes; 0 for floats
-    bool alpha = true;        ///< whether to test it
-    /// Called before each run with the runs done and to be done in all.
+    bool alpha = true;        ///< whether to test alpha
+    /// Called before each run with the number of runs done and the total.
     std::function<void(int, int)> progress = {};
 };
 
 /// In which numbers averages are taken.
 enum class Light {
-    unknown,  ///< nothing was averaged (nearest), or by no transfer function that is known here
+    unknown,  ///< nothing was averaged (nearest), or the transfer function is not known here
     codes,    ///< as they are stored
     srgb,     ///< decoded by the sRGB curve: linear light
     gamma22,  ///< decoded by a power of 2.2
@@ -65,7 +66,7 @@ struct AxisReport {
     double shift = 0;                                ///< of the middle of the image, in target samples to the right
     double support_source = 0, support_coarser = 0;  ///< radius, in pitches of the source and of the coarser grid
     Phases phases;
-    double bias = 0;  ///< mean error, in the light that is filtered; in codes if there are such
+    double bias = 0;  ///< mean error, in the light that is filtered; in codes for integers
     KernelSamples samples;
 };
 
@@ -77,7 +78,7 @@ struct ScaleReport {
     std::optional<bool> separable;  ///< none where rounding hides it
     double pass_error = 0, alias = 0;  ///< on the zone plate, in dB of its power
     double overshoot = 0;              ///< next to an edge inside the range, of its height
-    double expected_overshoot = 0;     ///< what the kernel gives
+    double expected_overshoot = 0;     ///< what the kernel predicts
     double overrange = 0;              ///< beyond [0, 1] next to an edge from 0 to 1
     Image<float> plate;                ///< what became of the zone plate, as stored
 };
@@ -92,14 +93,14 @@ struct AlphaReport {
     double leak = 0;        ///< of the colour under alpha 0 into pixels that can be seen, at most
     std::string hidden;     ///< what becomes of that colour where nothing else is: kept, zero or changed
     double coverage = 0;    ///< mean alpha of a checkerboard of 0 and 1; 0.5 is right
-    double flat_error = 0;  ///< of a constant half transparent colour, at most
+    double flat_error = 0;  ///< largest change of a constant, half transparent colour
 };
 
 struct AuditReport {
     std::vector<LightReport> light;  ///< at the first scale that shrinks, at the first that grows
     Light filtered_in = Light::unknown;
     std::vector<ScaleReport> scales;
-    std::vector<std::string_view> edges;  ///< the edge rules that explain all rows; empty: unknown or not to be seen
+    std::vector<std::string_view> edges;  ///< the edge rules that explain all rows; empty: unknown or not visible
     EdgeErrors edge_errors;
     std::vector<AlphaReport> alpha;  ///< at the same scales as light
     double code = 0;

@@ -1,4 +1,5 @@
-// The pictures that an audit shows beside the line probe, and what is read from their results.
+// The pictures that an audit shows beside the line probe, and what their results tell.
+// Stability: inner.
 #pragma once
 #include "bandlimit/analysis/audit.h"
 

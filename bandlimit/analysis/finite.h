@@ -1,4 +1,5 @@
-// What a sample that is no number counts as when images are measured.
+// How samples that are not finite count when images are measured.
+// Stability: inner.
 #pragma once
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // Power spectra of images.
+// Stability: evolving.
 #pragma once
 #include <vector>
 
@@ -8,7 +9,7 @@ namespace bandlimit {
 
 /// How samples are weighted before the transform.
 enum class Window {
-    none,  ///< all alike; fit for images that tile, or noise
+    none,  ///< all alike; suits images that tile, and noise
     hann   ///< sin^2 along both axes, 0 at the edges: keeps the borders from leaking into all frequencies
 };
 
@@ -27,9 +28,12 @@ struct RadialSpectrum {
 
 /// The radially averaged power spectrum of `image`, its mean removed; the mean of its channels' spectra.
 ///
-/// A window is scaled so that its mean square is 1: `power` then sums to the variance under the window, which is that
-/// of the image only on average. range    what is not finite counts as 0 cost     one complex FFT of the image per
-/// channel, in double throws   Error for an empty image
+/// A window is scaled so that its mean square is 1: `power` then sums to the variance under the window, which equals
+/// that of the image only on average.
+///
+/// range    samples that are not finite count as 0
+/// cost     one complex FFT of the image per channel, in double
+/// throws   Error for an empty image
 RadialSpectrum radial_spectrum(View<const float> image, Window window = Window::hann);
 
 }  // namespace bandlimit

@@ -1,4 +1,5 @@
 // Continuous Fourier transforms of kernels.
+// Stability: evolving.
 #pragma once
 #include "bandlimit/core/axis.h"
 #include "bandlimit/kernel/kernel.h"
@@ -9,8 +10,8 @@ namespace bandlimit {
 /// The Fourier transform of a kernel at frequency f, real because kernels are even.
 ///
 /// separable  the integral of k(x) cos(2 pi f x) over all x
-/// radial     2 pi times the integral of k(r) J0(2 pi f r) r over r > 0: its profile in any direction (Hankel
-/// transform)
+/// radial     2 pi times the integral of k(r) J0(2 pi f r) r over r > 0: its profile in any direction (the Hankel
+///            transform)
 ///
 /// units   f in cycles per pitch: 1/2 is the Nyquist frequency of the samples that the kernel weighs, or of the coarser
 ///         target when it is widened
@@ -22,8 +23,8 @@ double spectrum(const Kernel& kernel, double f);
 /// spectrum() relative to its value at 0.
 double relative_spectrum(const Kernel& kernel, double f);
 
-/// The largest deviation of |relative_spectrum| from 1 on [0, pass_end]. Error below 1e-6. Throws Error for pass_end <
-/// 0.
+/// The largest deviation of |relative_spectrum| from 1 on [0, pass_end]. Error below 1e-6.
+/// Throws Error for pass_end < 0.
 double passband_ripple(const Kernel& kernel, double pass_end);
 
 /// The largest |relative_spectrum| on [stop_begin, stop_end]. Error and throws as above.

@@ -1,12 +1,12 @@
-// Measuring the weights of a resizer that is only known by what it does.
+// Measuring the weights of a resizer from its output.
 //
-// Impulses tell a weight each, and drown in the rounding of 8-bit codes. So here all trains of impulses that fit
+// A single impulse shows one weight, which drowns in the rounding of 8-bit codes. So all trains of impulses that fit
 // between each other are shown at once: band k of the probe shows column j high or low by the sign of a Hadamard
-// matrix, and the inverse of that matrix takes the trains apart again. The noise of a weight falls by the root of the
-// number of bands.
+// matrix, and the inverse of that matrix separates the trains again. The noise of a weight falls with the square root
+// of the number of bands.
 //
-// Source: Harwit & Sloane, Hadamard Transform Optics, 1979; the columns of a Sylvester matrix, without the constant
-// one.
+// Source: Harwit & Sloane, Hadamard Transform Optics, 1979; the columns of a Sylvester matrix except the constant one.
+// Stability: evolving.
 #pragma once
 #include <vector>
 
@@ -34,7 +34,7 @@ struct Ratio {
 /// throws  Error unless it is within 1e-6 of `scale`, and within 1/8 to 8
 Ratio ratio_of(double scale);
 
-/// The layout of a probe: `order` bands below each other, constant along y, each as tall as what the filter may reach.
+/// The layout of a probe: `order` bands below each other, constant along y, each as tall as the filter may reach.
 struct LineProbe {
     Ratio ratio;
     double reach = 5;  ///< radius of the widest kernel that is measured whole, in pitches of the coarser grid
@@ -42,7 +42,7 @@ struct LineProbe {
     int order = 0;                ///< bands: a power of 2
     int band = 0;                 ///< source rows of a band
 
-    /// Distance of the impulses of a train: inputs that are so far apart cannot be told from each other.
+    /// Distance of the impulses of a train: inputs at that distance cannot be distinguished.
     int period() const { return order - 1; }
     int height() const { return order * band; }
     int out_height() const { return height() / ratio.from * ratio.to; }
@@ -52,7 +52,8 @@ struct LineProbe {
 /// them. Throws Error unless 1 <= reach <= 16.
 LineProbe line_probe(const Ratio& ratio, double reach = 5);
 
-/// The probe, of two values. shapes  [inputs x height() x 1]
+/// The probe, drawn in two values.
+/// shapes   [inputs x height() x 1]
 Image<float> draw(const LineProbe& probe, float low, float high);
 
 /// Weights that were measured: those of output i by the input's index modulo `period`.
@@ -76,7 +77,7 @@ struct MeasuredBank {
     double corner_position(int output) const;
 };
 
-/// Takes the trains of `result`, what became of a probe, apart.
+/// Separates the trains in `result`, a probe after the resizer.
 ///
 /// shapes   result [outputs x out_height() x 1], in the light that was filtered, as `low` and `high` are
 /// error    weights of kernels beyond probe.reach come out on the wrong inputs; noise / ((high - low) / 2 sqrt(order))

@@ -1,8 +1,9 @@
-// How far two images are apart.
+// How much two images differ.
 //
-// Values are scaled so that white is 1, encoded or linear as the caller likes; both images alike. Samples that are not
+// Values are scaled so that white is 1, encoded or linear as the caller chooses, both images alike. Samples that are not
 // finite count as 0 (finite.h). All sums are in double and in an order that only the size decides, so that results have
 // the same bits for any number of threads and any blocks of rows.
+// Stability: evolving.
 #pragma once
 #include <vector>
 
@@ -28,9 +29,9 @@ struct Metrics : Measures {
 /// Mean squared and largest error of two images that arrive in blocks of rows.
 class ErrorMeter {
 public:
-    /// Leaves out samples nearer than `border` to an edge. Throws Error for sizes below 1 or where nothing is left.
+    /// Ignores samples nearer than `border` to an edge. Throws Error for sizes below 1, or if nothing is left.
     ErrorMeter(int width, int height, int channels, int border = 0, Parallel parallel = {});
-    /// Takes the next rows of both. Throws Error for other shapes or more rows than `height`.
+    /// Takes the next rows of both. Throws Error for a different shape or more rows than `height`.
     void add_rows(View<const float> a, View<const float> b);
     /// Fills mse and max_abs, one entry per channel. Throws Error before the last row.
     void fill(std::vector<Measures>& per_channel) const;
@@ -41,11 +42,11 @@ private:
     std::vector<double> square_, largest_;  ///< per channel
 };
 
-/// Structural similarity of two images that arrive in blocks of rows; at most 64 rows and the window are held.
+/// Structural similarity of two images that arrive in blocks of rows; at most 64 rows and the window are kept.
 ///
 /// Wang, Bovik, Sheikh & Simoncelli 2004, eq. 13: an 11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1,
 /// variances of the population; the mean over all positions where the window lies inside the image (less its border).
-/// Where less than 11 samples are left along an axis, borders are reflected instead and all positions count.
+/// If fewer than 11 samples are left along an axis, borders are reflected instead and all positions count.
 ///
 /// range   |sample| < 1e9
 /// error   moments are sums in float: about 1e-6 of the mean for values in [0, 1]; identical images give exactly 1
@@ -67,20 +68,20 @@ private:
     bool small_;                 ///< no window fits: all rows are held, and measured at the end
     Image<float> planes_;        ///< of the rows held: sum and difference, per channel
     int held_ = 0;               ///< rows in planes_
-    std::vector<double> total_;  ///< of the similarities so far, per channel
-    double positions_ = 0;       ///< how many they are
+    std::vector<double> total_;  ///< sum of the similarities so far, per channel
+    double positions_ = 0;       ///< how many
 };
 
 /// Means and maximum over at least one channel.
 Metrics summarize(std::vector<Measures> per_channel);
 
-/// All of it for images in memory.
+/// All measures, for images in memory.
 ///
 /// shapes   equal, at least 1 x 1
 /// throws   Error for other shapes, or a border that leaves nothing
 Metrics compare(View<const float> a, View<const float> b, int border = 0, Parallel parallel = {});
 
-/// One figure of it.
+/// One of the measures.
 double mse(View<const float> a, View<const float> b, int border = 0);
 double psnr(View<const float> a, View<const float> b, int border = 0);
 double max_abs(View<const float> a, View<const float> b, int border = 0);

@@ -232,7 +232,7 @@ Bank bank_of(const Candidate& candidate, const Placement& placement, int inputs,
     return part_of_bank(candidate, placement, inputs, outputs, 0, outputs);
 }
 
-Fit fit(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement, int most) {
+CandidateFit fit(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement, int most) {
     const Span rows = compared_rows(bank, most);
     const Bank prediction = predict(candidate, placement, bank, rows.begin, rows.end);
     std::vector<double> row;
@@ -253,32 +253,32 @@ double noise_floor(const MeasuredBank& bank) {
     return all > 0 ? bank.noise * std::sqrt(double(rows.end - rows.begin) * bank.period / all) : 0;
 }
 
-Fit best_fit(const MeasuredBank& bank, const Candidate& candidate, int rows) {
-    Fit best = fit(bank, candidate, {}, rows);
+CandidateFit best_fit(const MeasuredBank& bank, const Candidate& candidate, int rows) {
+    CandidateFit best = fit(bank, candidate, {}, rows);
     const double floor = noise_floor(bank);
     for (const Placement& placement :
          {Placement{false, top_left_shift(bank.ratio)}, Placement{true, 0}, Placement{false, mean_shift(bank)}}) {
-        const Fit other = fit(bank, candidate, placement, rows);
+        const CandidateFit other = fit(bank, candidate, placement, rows);
         if (other.residual + floor / 4 < convincing * best.residual) best = other;
     }
     return best;
 }
 
-Fit refined(const MeasuredBank& bank, const Candidate& candidate, const Fit& start) {
+CandidateFit refined(const MeasuredBank& bank, const Candidate& candidate, const CandidateFit& start) {
     if (candidate.kernel.form == Kernel::Form::nearest || candidate.is_sampled) return start;
     const auto residual = [&](double shift) { return fit(bank, candidate, {start.placement.centers, shift}).residual; };
     constexpr double around = 0.25;
     const double middle = start.placement.shift;
-    const Fit better =
+    const CandidateFit better =
         fit(bank, candidate, {start.placement.centers, minimise(residual, middle - around, middle + around, 16)});
     return better.residual < start.residual ? better : start;
 }
 
-Fitted fit_parameters(const MeasuredBank& bank, const Candidate& start, const Fit& from) {
+FittedCandidate fit_parameters(const MeasuredBank& bank, const Candidate& start, const CandidateFit& from) {
     const auto score = [&](const Candidate& c) { return fit(bank, c, from.placement).residual; };
-    Fitted best{start, from};
+    FittedCandidate best{start, from};
     const auto keep = [&](Candidate c) {
-        const Fit f = fit(bank, c, from.placement);
+        const CandidateFit f = fit(bank, c, from.placement);
         if (f.residual < best.fit.residual) best = {std::move(c), f};
     };
     for (const double widening : {1.0, 1 / bank.ratio.stretch()}) {

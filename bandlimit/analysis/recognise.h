@@ -1,4 +1,5 @@
 // Which kernel, placement, edge mode and table of phases explain weights that were measured.
+// Stability: evolving.
 #pragma once
 #include <array>
 #include <optional>
@@ -14,7 +15,7 @@ namespace bandlimit {
 
 /// Where the samples of the target lie among those of the source.
 struct Placement {
-    bool centers = false;  ///< first and last sample centres coincide; else corners do, but for the shift
+    bool centers = false;  ///< first and last sample centres coincide; else corners do, apart from the shift
     double shift = 0;      ///< in target samples; above 0 the content moves right (down)
 };
 
@@ -30,7 +31,7 @@ double mean_shift(const MeasuredBank& bank);
 /// "corners", "centers", "top-left" (within a hundredth of a sample) or "shifted".
 std::string_view alignment_name(const Placement& placement, const Ratio& ratio);
 
-/// A kernel in a way in which programs use it.
+/// A kernel in one of the ways in which programs use it.
 struct Candidate {
     Kernel kernel;
     double widening = 1;      ///< what its nominal radius is multiplied by, in pitches of the coarser grid
@@ -39,7 +40,7 @@ struct Candidate {
     bool is_sampled = false;  ///< box by equal weights of the samples within it, not by areas
 };
 
-/// Every kernel of kernel_list(), with usual parameters, and what other programs make of them: box by equal weights,
+/// Every kernel of kernel_list(), with usual parameters, and the variants of other programs: box by equal weights,
 /// cubics of other parameters, for scales below 1 all of them also not widened, and above 1 "area", the mean over
 /// the target's cell where box picks a sample.
 std::vector<Candidate> all_candidates(const Ratio& ratio);
@@ -48,31 +49,30 @@ std::vector<Candidate> all_candidates(const Ratio& ratio);
 Bank bank_of(const Candidate& candidate, const Placement& placement, int inputs, int outputs);
 
 /// How well a candidate explains a measured bank, away from the borders.
-struct Fit {
+struct CandidateFit {
     Placement placement;
     double residual = 1;  ///< root of the mean square error over that of the weights
 };
 
 /// The residual of a candidate at one placement, from at most so many outputs.
-Fit fit(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement, int rows = 100);
+CandidateFit fit(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement, int rows = 100);
 
 /// The same at the best of: corners, top-left, centers, and the shift that the centres of the measured rows show. The
 /// earlier one stays unless a later one is better by more than noise.
-Fit best_fit(const MeasuredBank& bank, const Candidate& candidate, int rows = 100);
+CandidateFit best_fit(const MeasuredBank& bank, const Candidate& candidate, int rows = 100);
 
 /// The residual that rounding alone leaves.
 double noise_floor(const MeasuredBank& bank);
 
-/// The shift around that of `fit` which leaves the least residual, by golden section: to about a thousandth of a
-/// sample.
-Fit refined(const MeasuredBank& bank, const Candidate& candidate, const Fit& fit);
+/// The shift near that of `fit` with the least residual, by golden section: to about a thousandth of a sample.
+CandidateFit refined(const MeasuredBank& bank, const Candidate& candidate, const CandidateFit& fit);
 
 /// A candidate of free parameters (any cubic, any Gaussian, another width of `start`), fitted by least squares.
-struct Fitted {
+struct FittedCandidate {
     Candidate candidate;
-    Fit fit;
+    CandidateFit fit;
 };
-Fitted fit_parameters(const MeasuredBank& bank, const Candidate& start, const Fit& fit);
+FittedCandidate fit_parameters(const MeasuredBank& bank, const Candidate& start, const CandidateFit& fit);
 
 /// How far measured weights reach from the output's place, in source samples: the largest distance of one that is above
 /// six standard deviations of the noise and 0.4 % of the largest.
@@ -85,7 +85,7 @@ struct KernelSamples {
 };
 KernelSamples kernel_samples(const MeasuredBank& bank, const Placement& placement);
 
-/// What lies outside, in six ways: those of Edge, and "mirror", which reflects without repeating the border sample.
+/// Six rules for what lies outside: those of Edge, and "mirror", which reflects without repeating the border sample.
 inline constexpr std::array<std::string_view, 6> edge_rules{"clamp", "reflect",     "wrap",
                                                             "zero",  "renormalize", "mirror"};
 
@@ -107,12 +107,12 @@ EdgeErrors edge_errors(const MeasuredBank& bank, const Candidate& candidate, con
 
 /// Whether weights come from a table of so many phases per source sample.
 struct Phases {
-    std::optional<int> count;  ///< 4, 8, ... 256; none if positions are exact as far as one can see
-    int finest = 0;            ///< the largest number of phases that would have been seen; 0: none at all
+    std::optional<int> count;  ///< 4, 8, ... 256; none if positions are exact as far as can be measured
+    int finest = 0;            ///< the largest number of phases that would have been detected; 0: none
     double deviation = 0;      ///< root mean square of the rows' shifts against their places, in source samples
 };
 
-/// Looks at the shift of each row for the pattern of a table. Kernels that jump (nearest, box) tell nothing.
+/// Looks at the shift of each row for the pattern of a table. Kernels that jump (nearest, box) reveal nothing.
 Phases find_phases(const MeasuredBank& bank, const Candidate& candidate, const Placement& placement);
 
 }  // namespace bandlimit

@@ -21,13 +21,13 @@ MeasuredBank measured(const ResizeFunction& resize, const Ratio& ratio, bool byt
 
 struct Found {
     Candidate candidate;
-    Fit fit;
+    CandidateFit fit;
 };
 /// The candidate of the least residual.
 Found recognise(const MeasuredBank& bank) {
     Found best;
     for (const Candidate& c : all_candidates(bank.ratio))
-        if (const Fit f = best_fit(bank, c, 24); f.residual < best.fit.residual) best = {c, f};
+        if (const CandidateFit f = best_fit(bank, c, 24); f.residual < best.fit.residual) best = {c, f};
     return best;
 }
 
@@ -98,7 +98,7 @@ TEST(Recognise, EveryAlignment) {
                                        .placement = placement,
                                        .bytes = bytes},
                              ratio, bytes);
-                const Fit fit = refined(bank, {catmull_rom()}, best_fit(bank, {catmull_rom()}));
+                const CandidateFit fit = refined(bank, {catmull_rom()}, best_fit(bank, {catmull_rom()}));
                 EXPECT_EQ(alignment_name(fit.placement, ratio), std::string_view(name))
                     << ratio.to << "/" << ratio.from;
                 EXPECT_NEAR(fit.placement.shift, placement.shift, bytes ? 0.005 : 0.001) << name;
@@ -154,7 +154,7 @@ TEST(Recognise, FreeParameters) {
         const MeasuredBank bank =
             measured(OwnResize{.options = {.reconstruction = parse_kernel(name)}, .bytes = true}, grow, true);
         const Found near = recognise(bank);
-        const Fitted fitted = fit_parameters(bank, near.candidate, near.fit);
+        const FittedCandidate fitted = fit_parameters(bank, near.candidate, near.fit);
         EXPECT_LT(fitted.fit.residual, 1.3 * noise_floor(bank)) << name << ": " << fitted.candidate.kernel.name;
         EXPECT_EQ(fitted.candidate.kernel.name.substr(0, 5), std::string(name).substr(0, 5));
     }
@@ -167,7 +167,7 @@ TEST(Recognise, TablesOfPhases) {
                 return table_bank(lanczos(3), count, nearest, inputs, outputs);
             };
             const MeasuredBank bank = measured(by_bank(make), grow, true);
-            const Fit fit = best_fit(bank, {lanczos(3)});
+            const CandidateFit fit = best_fit(bank, {lanczos(3)});
             EXPECT_EQ(find_phases(bank, {lanczos(3)}, fit.placement).count, count) << nearest;
         }
     const MeasuredBank exact =

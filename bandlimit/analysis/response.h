@@ -3,16 +3,17 @@
 // Sign and reference, once for this room: a cosine at position x is e^{+2 pi i f x}, f in cycles per source sample, and
 // an output at position o that reads it comes out as H(f) e^{+2 pi i f o}. So H(f) = sum_j w_j e^{+2 pi i f (x_j - o)}:
 // weights that are symmetric about their output have a real H.
+// Stability: evolving.
 #pragma once
 #include <complex>
 #include <functional>
 #include <vector>
 
 #include "bandlimit/core/axis.h"
+#include "bandlimit/kernel/radial_weights.h"
 #include "bandlimit/kernel/taps.h"
 #include "bandlimit/math/fft.h"
 #include "bandlimit/resample/bank.h"
-#include "bandlimit/resample/radial.h"
 
 namespace bandlimit {
 
@@ -27,7 +28,7 @@ struct PlacedWeights {
     /// The output lies `phase` to the right of input sample i * factor.
     PlacedWeights(const Taps& taps, double phase) : PlacedWeights(taps.first - phase, taps.weights) {}
     /// Row `output` of a bank, an output that lies at source index `position` (0 is the centre of the first sample).
-    /// Throws Error if there is no such output.
+    /// Throws Error if the bank does not have that output.
     PlacedWeights(const Bank& bank, int output, double position);
 };
 
@@ -42,9 +43,9 @@ double gain(const PlacedWeights& weights, double cycles_per_sample);
 double group_delay(const PlacedWeights& weights, double cycles_per_sample);
 
 double sum(const PlacedWeights& weights);
-/// Sum of squares: by how much the variance of white noise is scaled.
+/// Sum of squares: the factor by which the variance of white noise changes.
 double variance(const PlacedWeights& weights);
-/// Centre of the weights relative to the output, in source samples; NaN where they sum to 0.
+/// Centre of the weights relative to the output, in source samples; NaN if they sum to 0.
 double centroid(const PlacedWeights& weights);
 
 /// The largest deviation of |H| from 1 on [0, pass_end]. Error below 1e-9 sum |w|. Throws Error unless 0 <= pass_end.

@@ -1,4 +1,5 @@
-// By how much two images are shifted against each other.
+// How far two images are shifted relative to each other.
+// Stability: evolving.
 #pragma once
 #include <optional>
 
@@ -9,7 +10,7 @@ namespace bandlimit {
 
 /// A shift in samples: above 0 where the content of the second image lies right of, or below, that of the first.
 struct Shift {
-    std::optional<double> x, y;  ///< none where undefined
+    std::optional<double> x, y;  ///< empty if undefined
     /// The share of the second image's power, below a tenth of the sampling rate, that the first one does not explain
     /// when shifted and put through a symmetric filter; 1 where nothing is defined, or the image too small to tell.
     double residual = 1;
@@ -21,7 +22,7 @@ struct ShiftWindow {
 };
 ShiftWindow shift_window(int width, int height);
 
-/// The shift between two images of the same scene, however each was filtered by something symmetric.
+/// The shift between two images of the same scene, even if each went through its own symmetric filter.
 ///
 /// Mean over channels; correlation to the nearest sample; then b is shifted back, and the plane through the phases of
 /// the cross-spectrum below a quarter of the sampling rate (least squares, weighted by cross-power and coherence) says
@@ -34,9 +35,8 @@ ShiftWindow shift_window(int width, int height);
 ///          five standard deviations of what unrelated images of so few independent frequencies would give (at most
 ///          0.95)
 /// accuracy 0.01 samples for images of 100 x 100 and more that differ by a shift and symmetric filters of a few taps;
-/// what
-///          their gradients allow under noise. Shifts up to about a third of the window
-/// range    what is not finite counts as 0; the scale of values does not matter
+///          under noise, whatever their gradients allow. Shifts up to about a third of the window
+/// range    samples that are not finite count as 0; the scale of values does not matter
 /// cost     at most about twenty FFTs of the window, in double
 /// throws   Error if the shapes differ
 /// source   Kuglin & Hines 1975 (phase correlation); the fit of a plane as in Stone et al. 2001

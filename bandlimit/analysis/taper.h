@@ -1,4 +1,5 @@
-// Windows that let an image fade out towards its borders.
+// Windows that fade an image out towards its borders.
+// Stability: inner.
 #pragma once
 #include <cmath>
 #include <numbers>

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/core/overlap.h"
 
 namespace bandlimit {
 namespace {

@@ -1,4 +1,5 @@
-// The numbers that files store, and their way to float and back.
+// Number formats of files, and their conversion to float and back.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,11 +10,10 @@
 
 #include "bandlimit/color/half.h"
 #include "bandlimit/core/image.h"
-#include "bandlimit/core/overlap.h"
 
 namespace bandlimit {
 
-/// How a stored sample is written down. Integers hold [0, 1]: code / 255 or code / 65535.
+/// How a sample is stored. Integers hold [0, 1]: code / 255 or code / 65535.
 enum class Depth { u8, u16, f16, f32 };
 
 std::span<const Depth> all_depths();
@@ -42,21 +42,21 @@ AnyView rows_of(const AnyView& view, int first, int count);
 AnyConstView rows_of(const AnyConstView& view, int first, int count);
 Depth depth_of(const AnyConstView& view);
 
-/// As check_apart() of two views.
+/// Like check_apart() for two views.
 void check_apart(const char* function, const AnyConstView& source, const AnyView& target);
 
-/// How many samples a view has each way.
+/// The dimensions of a view.
 struct ViewShape {
     int width = 0, height = 0, channels = 0;
 };
 ViewShape shape_of(const AnyView& view);
 ViewShape shape_of(const AnyConstView& view);
 
-/// Code to value: exact for 0 and the largest code, else correctly rounded.
+/// Code to value: exact for 0 and the largest code, otherwise correctly rounded.
 inline float from_code(std::uint8_t code) { return static_cast<float>(code) / 255.0f; }
 inline float from_code(std::uint16_t code) { return static_cast<float>(code) / 65535.0f; }
 
-/// Value to code: clamped to [0, 1] and rounded to nearest. What is not finite becomes 0.
+/// Value to code: clamped to [0, 1] and rounded to nearest. Values that are not finite become 0.
 ///
 /// The product is exact in double for every float, so the rounding is that of the exact value. Written without
 /// branches, for loops over rows.

@@ -1,4 +1,5 @@
-// From stored samples to what filters work on, and back, a row at a time.
+// From stored samples to linear light, and back, a row at a time.
+// Stability: stable.
 #pragma once
 #include <span>
 
@@ -16,36 +17,38 @@ struct Encoding {
     bool associated = false;               ///< colour is stored multiplied by alpha
 };
 
-/// Throws Error, in the name of `function`, for an alpha that is none of `channels` channels, nor -1. Every function
-/// that takes an Encoding calls it.
+/// Throws Error, in the name of `function`, unless alpha is one of `channels` channels or -1. Every function that takes
+/// an Encoding calls it.
 void check_encoding(const char* function, const Encoding& encoding, int channels);
 
 /// Reads row `y` of `image` as linear light, channels interleaved, into `row`.
 ///
+/// `premultiplied` asks for colour multiplied by alpha; colour that is stored multiplied stays multiplied either way.
+///
 /// shapes   row [width * channels]
 /// range    any stored value; integers become [0, 1]
-/// `premultiplied` asks for colour multiplied by alpha; what is stored so already stays so in either case
-/// cost     up to 4 channels a vector look-up per colour sample of sRGB codes, arithmetic for other codes and half;
-/// floats
-///          and halves of sRGB, and more channels with alpha or not side by side, a sample at a time
+/// cost     up to 4 channels: a vector look-up per colour sample of sRGB codes, arithmetic for other codes and halves.
+///          One sample at a time for floats and halves of sRGB, for more channels with alpha, and for channels that are
+///          not side by side
 void decode_row(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied, std::span<float> row);
 
 /// Writes `row` to row `y` of `image`.
 ///
-/// `premultiplied` tells what the row holds, not what was asked of decode_row: a source that is stored associated gives
-/// premultiplied rows in either case.
-/// Integers are clamped and rounded to the nearest code of the exact transfer function; what is not finite becomes 0.
-/// Colour is divided by alpha sample by sample, correctly rounded; alpha of zero or less gives zero colour. (A product
-/// with 1 / alpha was measured: a tenth less time for sRGB bytes, and one more rounding.)
+/// `premultiplied` says what the row holds, not what decode_row was asked for: a source that is stored associated gives
+/// premultiplied rows either way. Integers are clamped and rounded to the nearest code of the exact transfer function;
+/// values that are not finite become 0. Colour is divided by alpha sample by sample, correctly rounded; alpha of zero
+/// or less gives zero colour. (Multiplying by 1 / alpha was measured: it saves a tenth of the time for sRGB bytes, and
+/// rounds once more.)
+///
 /// shapes   row [width * channels]
 /// returns  whether a value that is not finite became the code 0
-/// cost     as decode_row, and a division per colour sample where alpha asks for it; allocates nothing
+/// cost     as decode_row, plus a division per colour sample where colour must be divided by alpha; allocates nothing
 bool encode_row(std::span<const float> row, bool premultiplied, const AnyView& image, int y, const Encoding& stored);
 
 /// Lays `row` (channels interleaved, alpha among them) over an opaque colour, and drops alpha.
 ///
 /// shapes   row [width * channels], background [channels - 1] in linear light, out [width * (channels - 1)]
-/// throws   Error for an alpha that is no channel
+/// throws   Error for an alpha that is not one of the channels
 void composite_row(std::span<const float> row, bool premultiplied, int channels, int alpha,
                    std::span<const float> background, std::span<float> out);
 

@@ -1,4 +1,5 @@
 // The vectors of encoding_simd.cpp, once per instruction set: stored samples and rows as planes, codes as floats.
+// Stability: inner.
 #include <cstddef>
 #include <cstdint>
 #include <limits>

@@ -1,5 +1,6 @@
 // The work of decode_row(), encode_row() and composite_row(), which have checked the arguments: the definition, a
 // sample at a time, and the same by vectors.
+// Stability: inner.
 #pragma once
 #include <span>
 
@@ -28,7 +29,7 @@ bool encode_row_scalar(std::span<const float> row, bool premultiplied, const Any
 void composite_row_scalar(std::span<const float> row, bool premultiplied, int channels, int alpha,
                           std::span<const float> background, std::span<float> out);
 
-// The same on current_target(): the same bits, but for those of a NaN.
+// The same on current_target(): the same bits, except those of a NaN.
 void decode_row_simd(const AnyConstView& image, int y, const Encoding& stored, bool premultiplied,
                      std::span<float> row);
 bool encode_row_simd(std::span<const float> row, bool premultiplied, const AnyView& image, int y,

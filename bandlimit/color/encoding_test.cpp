@@ -263,18 +263,18 @@ std::vector<TakesEncoding> functions_that_take_encodings() {
         Resizer(grid, grid, 4).run({from.view(), 0, a}, {to.view(), 0, b, {}});
     };
     const auto terms = [=](const Encoding& a, const Encoding& b) {
-        TermFilter(bank_terms(Taps{0, {1}}, grid, grid, Edge::clamp, Edge::clamp), true)
+        term_filter(bank_terms(Taps{0, {1}}, grid, grid, Edge::clamp, Edge::clamp), true)
             .run({from.view(), 0, a}, {to.view(), 0, b, {}}, {});
     };
     const auto level = [=](const Encoding& a, const Encoding& b) {
-        LevelFilter(Auto{}, grid, grid, 4, {}).run({from.view(), 0, a}, {to.view(), 0, b, {}}, {});
+        level_filter(Auto{}, grid, grid, 4, {}).run({from.view(), 0, a}, {to.view(), 0, b, {}}, {});
     };
     const ConvolutionWeights weights{Terms{{{1.0}, {1.0}}}, 0, 0};
     const auto convolve = [=](Method method, const Encoding& a, const Encoding& b) {
         Convolution(weights, 8, 8, {.method = method}).run({from.view(), 0, a}, {to.view(), 0, b, {}});
     };
-    const auto boosted = [=](const Encoding& a, const Encoding& b) {
-        run_boosted(Convolution(weights, 8, 8), 2, true, {from.view(), 0, a}, {to.view(), 0, b, {}});
+    const auto bright = [=](const Encoding& a, const Encoding& b) {
+        boosted(Convolution(weights, 8, 8), 2, true).run({from.view(), 0, a}, {to.view(), 0, b, {}});
     };
     const TexelFormat format{4, Depth::f32};
     const View<const float> base = from.view();
@@ -284,16 +284,16 @@ std::vector<TakesEncoding> functions_that_take_encodings() {
         {"encode_row", [](const Encoding& e) { encode_row(row, true, to.view(), 0, e); }},
         {"Resizer::run, source", [=](const Encoding& e) { resize(e, {}); }},
         {"Resizer::run, target", [=](const Encoding& e) { resize({}, e); }},
-        {"TermFilter::run, source", [=](const Encoding& e) { terms(e, {}); }},
-        {"TermFilter::run, target", [=](const Encoding& e) { terms({}, e); }},
-        {"LevelFilter::run, source", [=](const Encoding& e) { level(e, {}); }},
-        {"LevelFilter::run, target", [=](const Encoding& e) { level({}, e); }},
+        {"term_filter, run, source", [=](const Encoding& e) { terms(e, {}); }},
+        {"term_filter, run, target", [=](const Encoding& e) { terms({}, e); }},
+        {"level_filter, run, source", [=](const Encoding& e) { level(e, {}); }},
+        {"level_filter, run, target", [=](const Encoding& e) { level({}, e); }},
         {"Convolution::run, source", [=](const Encoding& e) { convolve(Method::direct, e, {}); }},
         {"Convolution::run, target", [=](const Encoding& e) { convolve(Method::direct, {}, e); }},
         {"Convolution::run by FFT, source", [=](const Encoding& e) { convolve(Method::fft, e, {}); }},
         {"Convolution::run by FFT, target", [=](const Encoding& e) { convolve(Method::fft, {}, e); }},
-        {"run_boosted, source", [=](const Encoding& e) { boosted(e, {}); }},
-        {"run_boosted, target", [=](const Encoding& e) { boosted({}, e); }},
+        {"boosted, run, source", [=](const Encoding& e) { bright(e, {}); }},
+        {"boosted, run, target", [=](const Encoding& e) { bright({}, e); }},
         {"MipCascade", [](const Encoding& e) { MipCascade(8, 8, 4, e, 1, {}); }},
         {"make_mips", [=](const Encoding& e) { make_mips(base, e, format); }},
         {"make_mips of data", [=](const Encoding& e) { make_mips(base, e, format, {.role = Role::data}); }},

@@ -1,4 +1,5 @@
 // 16-bit floats.
+// Stability: stable.
 #pragma once
 #include <cstdint>
 

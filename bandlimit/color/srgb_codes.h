@@ -1,4 +1,5 @@
 // Tables for the codes of sRGB, built once, when first used.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +16,7 @@ const std::vector<float>& srgb_light();
 constexpr std::uint32_t bucket_of(std::uint32_t float_bits) { return float_bits >> 16; }
 
 /// Encoding is monotonic, so a code is the number of thresholds that a value has reached: thresholds[k - 1] is the
-/// smallest float whose exact encoding is at least k - 1/2 codes, for k of 1 and more. All else here follows from them.
+/// smallest float whose exact encoding is at least k - 1/2 codes, for k >= 1. Everything else here follows from them.
 struct SrgbThresholds {
     std::vector<float> thresholds;       ///< [largest code]
     std::vector<std::uint32_t> reached;  ///< by the first float of each bucket up to that behind 1: few are left to try

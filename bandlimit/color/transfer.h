@@ -1,4 +1,5 @@
 // Transfer functions: what a stored value means in linear light.
+// Stability: stable.
 #pragma once
 #include <string_view>
 
@@ -7,7 +8,7 @@ namespace bandlimit {
 /// How stored values relate to linear light.
 enum class Transfer {
     linear,  ///< they are the same
-    srgb     ///< IEC 61966-2-1; below 0 and above 1 continued as odd function and power
+    srgb     ///< IEC 61966-2-1; continued below 0 as an odd function, above 1 by the power
 };
 
 std::string_view name_of(Transfer transfer);

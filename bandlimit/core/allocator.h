@@ -1,4 +1,5 @@
 // Memory for samples: aligned for vectors, in huge pages where it is large.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <new>
@@ -10,7 +11,7 @@
 namespace bandlimit {
 
 /// An allocator for std::vector whose memory begins at a cache line, or from 4 MiB on at a huge page, which the system
-/// is then advised to use: the first touch of small pages costs as much as resizing what lies in them.
+/// is then advised to use: touching small pages for the first time costs as much as resizing their content.
 template <class T>
 struct SampleAllocator {
     using value_type = T;
@@ -23,7 +24,7 @@ struct SampleAllocator {
         const std::size_t bytes = count * sizeof(T);
         void* const memory = ::operator new(bytes, alignment(bytes));
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-        // Advice: where it is refused, pages stay small.
+        // Only advice: if it is refused, pages stay small.
         if (bytes >= huge) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
 #endif
         return static_cast<T*>(memory);

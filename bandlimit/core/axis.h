@@ -1,4 +1,5 @@
 // Where samples sit. This is the only file of the project that knows about half a cell.
+// Stability: stable.
 #pragma once
 
 namespace bandlimit {
@@ -21,15 +22,20 @@ struct Axis {
     double pitch() const { return (end - begin) / count; }
     /// Where sample i lies; fractions allowed.
     double position(double i) const { return begin + (i + 0.5) * pitch(); }
-    /// The fractional index of what lies at x: the inverse of position().
+    /// The fractional index at position x: the inverse of position().
     double index(double x) const { return (x - begin) / pitch() - 0.5; }
     /// The axis of the cells [first, last) of this one.
     Axis cells(int first, int last) const { return {last - first, begin + first * pitch(), begin + last * pitch()}; }
 };
 
+/// The axes of an image.
+struct Grid {
+    Axis x, y;
+};
+
 /// An axis of `count` samples whose first and last sample centres coincide with those of `source` ("align_corners"
-/// elsewhere). For exchange with code that works so; our own alignment shares corners: Axis{count, begin, end}.
-/// A single sample, on either side, has no pitch to match: the interval of `source` is kept then.
+/// elsewhere). For interoperability with code that does so; our own alignment shares corners: Axis{count, begin, end}.
+/// A single sample, on either side, has no pitch to match; then the interval of `source` is kept.
 inline Axis center_aligned(const Axis& source, int count) {
     if (source.count < 2 || count < 2) return {count, source.begin, source.end};
     const double half_cell = source.pitch() / 2;

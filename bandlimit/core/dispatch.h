@@ -15,15 +15,16 @@
 //   void work(int x) { BANDLIMIT_DISPATCH(Work)(x); }
 //   }
 //   #endif
+// Stability: inner.
 #pragma once
 #include <cstddef>
 
 #include "bandlimit/core/targets.h"
 
-/// Whether the present pass is the one for Target::scalar.
+/// Whether this pass compiles for Target::scalar.
 #define BANDLIMIT_NO_VECTORS (HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128)
 
-/// The table of a function by Target. Highway's own is chosen for the whole process, other libraries included.
+/// The table of a function by Target. Highway's own choice would hold for the whole process, including other libraries.
 #define BANDLIMIT_EXPORT(function)                                                           \
     constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##ByTarget[] = {              \
         HWY_CHOOSE_FALLBACK(function), HWY_CHOOSE_SSE4(function), HWY_CHOOSE_AVX2(function), \

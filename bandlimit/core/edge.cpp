@@ -1,5 +1,6 @@
 #include "bandlimit/core/edge.h"
 
+#include <algorithm>
 #include <array>
 
 #include "bandlimit/core/error.h"
@@ -43,6 +44,19 @@ int resolve(int i, int n, Edge edge) {
         case Edge::renormalize: break;
     }
     return -1;
+}
+
+IndexRange stored_indices(IndexRange read, int n, Edge edge) {
+    if (read.begin >= 0 && read.end <= n) return read;
+    if (edge == Edge::wrap || read.count() >= n) return {0, n};
+    IndexRange range{n, 0};
+    for (int v = read.begin; v < read.end; ++v) {
+        const int i = resolve(v, n, edge);
+        if (i < 0) continue;
+        range.begin = std::min(range.begin, i);
+        range.end = std::max(range.end, i + 1);
+    }
+    return range.begin < range.end ? range : IndexRange{};
 }
 
 }  // namespace bandlimit

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <climits>
 #include <vector>
 
@@ -70,6 +71,25 @@ TEST(Edge, NamesReadBack) {
         EXPECT_NE(text.find("mirror"), std::string::npos);
         for (const Edge edge : all_edges()) EXPECT_NE(text.find(name_of(edge)), std::string::npos) << text;
     }
+}
+
+TEST(StoredIndices, HoldWhatIsReadAndNothingElse) {
+    for (const Edge edge : all_edges())
+        for (int n = 1; n <= 9; ++n)
+            for (int begin = -12; begin < 20; ++begin)
+                for (int end = begin + 1; end < 22; ++end) {
+                    IndexRange least{n, 0};
+                    for (int i = begin; i < end; ++i)
+                        if (const int at = resolve(i, n, edge); at >= 0)
+                            least = {std::min(least.begin, at), std::max(least.end, at + 1)};
+                    if (least.count() < 0) least = {0, 0};
+                    const IndexRange found = stored_indices({begin, end}, n, edge);
+                    const bool is_exact = end - begin < n && (edge != Edge::wrap || (begin >= 0 && end <= n));
+                    ASSERT_TRUE(is_exact ? found.begin == least.begin && found.end == least.end
+                                         : found.begin <= least.begin && found.end >= least.end && found.end <= n)
+                        << name_of(edge) << ' ' << n << ": " << begin << " to " << end << " gives " << found.begin
+                        << " to " << found.end;
+                }
 }
 
 }  // namespace

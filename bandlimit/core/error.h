@@ -1,4 +1,5 @@
 // Errors and how their messages are written.
+// Stability: stable.
 #pragma once
 #include <sstream>
 #include <stdexcept>
@@ -12,7 +13,7 @@ struct Error : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// Joins its arguments into one string, each printed as a stream prints it.
+/// Joins its arguments into one string, each formatted as by a stream.
 template <class... Parts>
 std::string message(const Parts&... parts) {
     std::ostringstream text;

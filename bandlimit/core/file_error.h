@@ -1,4 +1,5 @@
 // Errors of files.
+// Stability: inner.
 #pragma once
 #include <stdexcept>
 #include <string>

@@ -1,4 +1,5 @@
-// Samples that we own.
+// Owning images.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -18,7 +19,7 @@ enum class Layout {
 /// Owning, zeroed samples. Moves; copies only when asked, with clone().
 ///
 /// shapes   width, height >= 0, channels >= 1; rows are not padded
-/// throws   Error for a negative size or no channel; std::bad_alloc where memory ends
+/// throws   Error for a negative size or no channel; std::bad_alloc if memory runs out
 template <class T>
 class Image {
 public:
@@ -50,9 +51,8 @@ public:
 private:
     template <class U>
     View<U> view_of(U* data) const {
-        const std::ptrdiff_t w = width_, h = height_, c = channels_;
-        if (layout_ == Layout::interleaved) return {data, width_, height_, channels_, c, w * c, 1};
-        return {data, width_, height_, channels_, 1, w, w * h};
+        return layout_ == Layout::interleaved ? interleaved(data, width_, height_, channels_)
+                                              : planar(data, width_, height_, channels_);
     }
 
     std::vector<T, SampleAllocator<T>> samples_;

@@ -1,4 +1,5 @@
 // Whether views share memory.
+// Stability: inner.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -27,9 +28,9 @@ Footprint footprint_of(const View<T>& v) {
 /// Whether a byte belongs to samples of both. Bytes between samples belong to neither: the halves of a picture, its
 /// channels, or its even and odd rows do not overlap, though their addresses alternate.
 ///
-/// Exact; but where both lie in the same memory with strides so different that telling would take more than 100,000
-/// steps, they count as overlapping.
-/// cost    nothing worth mentioning where one lies behind the other, or where both have the same strides
+/// Exact, except for views of the same memory whose strides differ so much that an exact answer would take more than
+/// 100,000 steps: these count as overlapping.
+/// cost    negligible if one lies entirely before the other, or both have the same strides
 bool overlap(const Footprint& a, const Footprint& b);
 
 /// Throws Error, in the name of `function`, where source and target of a filter overlap.

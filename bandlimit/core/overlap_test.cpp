@@ -112,12 +112,12 @@ TEST(Overlap, IsRefusedByEveryFilterFromAViewToAView) {
     EXPECT_THROW(Resizer(grid, grid, 2).run({a, 0, {}}, {b, 0, {}, {}}), Error);
     EXPECT_THROW(Resizer(grid, grid, 2).run({a, 0, {}}, {a, 0, {}, {}}), Error);
     const auto terms = bank_terms(Taps{0, {1}}, grid, grid, Edge::clamp, Edge::clamp);
-    EXPECT_THROW(TermFilter(terms, true).run({a, 0, {}}, {b, 0, {}, {}}, {}), Error);
+    EXPECT_THROW(term_filter(terms, true).run({a, 0, {}}, {b, 0, {}, {}}, {}), Error);
     const ConvolutionWeights weights{Terms{{{1.0}, {1.0}}}, 0, 0};
     for (const Method method : {Method::direct, Method::fft}) {
         const Convolution convolution(weights, 8, 8, {.method = method});
         EXPECT_THROW(convolution.run({a, 0, {}}, {b, 0, {}, {}}), Error) << name_of(method);
-        EXPECT_THROW(run_boosted(convolution, 2, true, {a, 0, {}}, {b, 0, {}, {}}), Error);
+        EXPECT_THROW(boosted(convolution, 2, true).run({a, 0, {}}, {b, 0, {}, {}}), Error);
     }
     Image<std::uint8_t> codes(8, 8);
     EXPECT_THROW(resize_bytes_scalar(make_byte_banks(bank, bank), codes.view(), 0, codes.view(), 0), Error);

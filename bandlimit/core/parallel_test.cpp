@@ -80,6 +80,47 @@ TEST(Parallel, ThrowsWhatTheBodyThrew) {
     }
 }
 
+/// Runs tasks one after another, from the last to the first, and counts them.
+struct BackwardRunner {
+    int tasks = 0;
+    TaskRunner runner = [this](int count, const std::function<void(int)>& task) {
+        tasks += count;
+        for (int i = count - 1; i >= 0; --i) task(i);
+    };
+};
+
+TEST(Parallel, RunsOnTheThreadsOfACallersRunnerAlone) {
+    const auto caller = std::this_thread::get_id();
+    BackwardRunner backward;
+    std::vector<int> visits(100);
+    parallel_for(100, 3, {4, &backward.runner}, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        for (std::ptrdiff_t i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+    });
+    EXPECT_EQ(backward.tasks, 4);
+    EXPECT_EQ(visits, std::vector<int>(100, 1));
+    const auto unlucky = [](std::ptrdiff_t, std::ptrdiff_t) {
+        throw std::domain_error("no exception reaches a runner");
+    };
+    EXPECT_THROW(parallel_for(100, 1, {4, &backward.runner}, unlucky), std::domain_error);
+}
+
+TEST(Parallel, StopsBetweenRangesWhenAsked) {
+    BackwardRunner backward;
+    for (const int threads : {1, 2, 7})
+        for (const TaskRunner* runner : {static_cast<const TaskRunner*>(nullptr), &std::as_const(backward.runner)}) {
+            std::stop_source user;
+            std::atomic<int> done{0};
+            EXPECT_THROW(parallel_for(1000, 1, {threads, runner, user.get_token()},
+                                      [&](std::ptrdiff_t, std::ptrdiff_t) {
+                                          if (++done == 10) user.request_stop();
+                                      }),
+                         Stopped);
+            EXPECT_LT(done, 10 + 2 * threads);
+            EXPECT_THROW(parallel_for(1, 1, {threads, runner, user.get_token()}, [](auto, auto) {}), Stopped);
+        }
+}
+
 TEST(Parallel, RefusesNonsense) {
     const auto nothing = [](std::ptrdiff_t, std::ptrdiff_t) {};
     EXPECT_THROW(parallel_for(10, 0, {}, nothing), Error);

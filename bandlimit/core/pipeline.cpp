@@ -54,12 +54,13 @@ private:
     std::exception_ptr failure_;
 };
 
-void run_stage(Schedule& schedule, std::size_t s, const Stage& stage, int count) {
+void run_stage(Schedule& schedule, std::size_t s, const Stage& stage, int count, const Parallel& parallel) {
     try {
         for (int item = 0; item < count; ++item) {
             const int threads = schedule.begin(s, item, stage.scales);
             if (threads == 0) return;
-            stage.run(item, {threads});
+            parallel.check_stop();
+            stage.run(item, parallel.with_threads(threads));
             schedule.end(s, threads);
         }
     } catch (...) {
@@ -69,13 +70,16 @@ void run_stage(Schedule& schedule, std::size_t s, const Stage& stage, int count)
 
 }  // namespace
 
-void run_pipeline(int count, const std::vector<Stage>& stages, Parallel parallel) {
+void run_pipeline(int count, const std::vector<Stage>& stages, const Parallel& parallel) {
     if (count < 0 || stages.empty())
         fail("run_pipeline: ", count, " items through ", stages.size(), " stages; pass at least 0 and 1");
     const int threads = parallel.count();
-    if (threads == 1 || count == 1 || stages.size() == 1) {
+    if (threads == 1 || count == 1 || stages.size() == 1 || parallel.runner != nullptr) {
         for (int item = 0; item < count; ++item)
-            for (const Stage& stage : stages) stage.run(item, {stage.scales ? threads : 1});
+            for (const Stage& stage : stages) {
+                parallel.check_stop();
+                stage.run(item, parallel.with_threads(stage.scales ? threads : 1));
+            }
         return;
     }
     Schedule schedule(stages.size(), threads);
@@ -83,8 +87,8 @@ void run_pipeline(int count, const std::vector<Stage>& stages, Parallel parallel
         std::vector<std::jthread> workers;
         try {
             for (std::size_t s = 1; s < stages.size(); ++s)
-                workers.emplace_back([&, s] { run_stage(schedule, s, stages[s], count); });
-            run_stage(schedule, 0, stages[0], count);
+                workers.emplace_back([&, s] { run_stage(schedule, s, stages[s], count, parallel); });
+            run_stage(schedule, 0, stages[0], count, parallel);
         } catch (...) {  // no more threads are to be had
             schedule.fail(std::current_exception());
         }

@@ -115,5 +115,31 @@ TEST(Pipeline, RefusesWhatMakesNoSense) {
     EXPECT_NO_THROW(run_pipeline(0, {{[](int, Parallel) { FAIL(); }}}, {2}));
 }
 
+TEST(Pipeline, StopsBetweenItemsWhenAsked) {
+    for (const int threads : {1, 2, 4}) {
+        std::stop_source user;
+        std::atomic<int> done{0};
+        const Stage read{[](int, Parallel) {}}, work{[&](int item, Parallel p) {
+            EXPECT_TRUE(p.stop.stop_possible()) << "stages are told when to stop, too";
+            if (item == 3) user.request_stop();
+            ++done;
+        }};
+        EXPECT_THROW(run_pipeline(100, {read, work}, {.threads = threads, .stop = user.get_token()}), Stopped);
+        EXPECT_EQ(done, 4);
+    }
+}
+
+TEST(Pipeline, OverlapsNothingOnTheThreadsOfACaller) {
+    const TaskRunner runner = [](int count, const std::function<void(int)>& task) {
+        for (int i = 0; i < count; ++i) task(i);
+    };
+    const auto caller = std::this_thread::get_id();
+    const Stage stage{[&](int, Parallel p) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        EXPECT_EQ(p.runner, &runner);
+    }};
+    run_pipeline(5, {stage, stage, stage}, {.threads = 4, .runner = &runner});
+}
+
 }  // namespace
 }  // namespace bandlimit

@@ -1,4 +1,5 @@
 // A transposition of 4 x 4 lanes, once per instruction set.
+// Stability: inner.
 #include <hwy/highway.h>
 
 #if defined(BANDLIMIT_CORE_TRANSPOSE4_INL_H) == defined(HWY_TARGET_TOGGLE)

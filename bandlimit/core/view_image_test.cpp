@@ -116,5 +116,18 @@ TEST(Image, RefusesNegativeSizes) {
     EXPECT_NO_THROW(Image<float>(0, 2));
 }
 
+TEST(View, OfMemoryAsItLies) {
+    std::vector<int> memory(60);
+    std::iota(memory.begin(), memory.end(), 0);
+    const View<int> rgb = interleaved(memory.data(), 3, 2, 3);
+    EXPECT_EQ(rgb(2, 1, 1), 2 * 3 + 1 * 9 + 1);
+    EXPECT_EQ(interleaved(memory.data(), 3, 2, 3, 20)(2, 1, 1), 2 * 3 + 1 * 20 + 1) << "padded rows";
+    EXPECT_EQ(interleaved(memory.data() + 40, 3, 3, 3, -20)(2, 2, 1), 40 - 2 * 20 + 2 * 3 + 1) << "from the bottom up";
+    EXPECT_EQ(planar(memory.data(), 5, 3)(4, 2), 4 + 2 * 5);
+    EXPECT_EQ(planar(memory.data(), 5, 3, 2)(4, 2, 1), 4 + 2 * 5 + 15);
+    EXPECT_EQ(planar(memory.data(), 5, 3, 2, 8)(4, 2, 1), 4 + 2 * 8 + 24);
+    EXPECT_EQ(planar(memory.data(), 5, 3, 2, 8, 30)(4, 2, 1), 4 + 2 * 8 + 30);
+}
+
 }  // namespace
 }  // namespace bandlimit

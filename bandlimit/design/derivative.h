@@ -1,4 +1,5 @@
 // Taps that differentiate.
+// Stability: evolving.
 #pragma once
 #include "bandlimit/kernel/taps.h"
 
@@ -6,7 +7,7 @@ namespace bandlimit {
 
 struct DerivativeOptions {
     enum class Optimal {
-        taylor,        ///< exact for polynomials of the highest degree that so many taps allow
+        taylor,        ///< exact for polynomials of the highest degree possible with that many taps
         least_squares  ///< the smallest mean square error over the band
     };
 
@@ -16,7 +17,7 @@ struct DerivativeOptions {
     double band = 0.5;        ///< cycles per sample, 0.05 to 0.5: over |f| < band errors are measured, and minimised
 };
 
-/// Antisymmetric taps and what they are worth. Their response about `position` is
+/// Antisymmetric taps and their quality. Their response about `position` is
 ///
 ///     H(f) = 2i sum_k c_k sin(2 pi f s_k),   the ideal one is 2 pi i f,
 ///

@@ -1,4 +1,4 @@
-// Filters that halve pictures, or shrink them by another whole factor, without aliasing more than they must: the least
+// Filters that halve pictures, or shrink them by another whole factor, with as little aliasing as possible: the least
 // squared distance from the ideal low-pass of passband.h, as taps, as weights, or as bilinear reads.
 //
 // All are symmetric about their output, and sum to 1. Weights solve a small quadratic program; where fetches read is
@@ -8,6 +8,7 @@
 // source  B. Wronski, Fast, GPU friendly, antialiasing downsampling filter, bartwronski.com, 2022. Ours solves for
 //         positions and weights at once, in place of folding pairs of weights, and for any number of fetches. Without
 //         limits the best taps are those of the ideal filter plus a constant that makes them sum to 1.
+// Stability: evolving.
 #pragma once
 #include <optional>
 #include <vector>
@@ -18,7 +19,7 @@
 
 namespace bandlimit {
 
-/// What a filter that changes the rate by a whole factor is to be.
+/// What a filter that changes the rate by a whole factor should achieve.
 struct RateGoal {
     int factor = 2;                           ///< 2 to 16
     bool upsample = false;                    ///< enlarge by the factor, which must be 2 then, instead of shrink
@@ -27,7 +28,7 @@ struct RateGoal {
     bool non_negative = false;                ///< no weight below 0
 };
 
-/// How far from its texel's centre the output lies that a filter is for, in texels, right and down.
+/// Where the output of a filter lies, in texels right of and below its texel's centre.
 ///
 /// Where pictures shrink that is the middle of the `factor` texels under it. Where they double there are two outputs
 /// per texel and axis, and filters are made for the one 1/4 texel to the right; mirrored they are the other's.
@@ -36,8 +37,8 @@ double output_texel(const RateGoal& goal);
 /// The best `count` taps. Of filters that enlarge, for the outputs 1/4 texel right of texel i: taps of factor 1.
 ///
 /// range   shrinking, count is even for even factors and odd for odd ones, so that taps are symmetric; 1 to 256
-/// throws  Error for a goal or a count out of range, or a limit of the gain that so few taps cannot keep
-/// cost    without limits and weights that of its size; else about count^3
+/// throws  Error for a goal or a count out of range, or a gain limit that so few taps cannot meet
+/// cost    linear without limits and band weights, otherwise about count^3
 /// example downsample_taps(8)     // .46369 .16358 -.07650 -.05078, mirrored
 Taps downsample_taps(int count, const RateGoal& goal = {});
 
@@ -81,7 +82,7 @@ struct FetchDesign {
 ///
 /// range   most 1 to 64
 /// units   see Fetch; of filters that enlarge, for the outputs 1/4 texel right of and below a texel's centre
-/// error   local optima, the best of many starts: nothing proves that there are no better ones
+/// error   local optima, the best of many starts: there is no proof that they are global
 /// cost    20 fetches at factor 2 in 0.2 s, 64 in some seconds; same result on every run
 /// throws  Error for goals and options out of range, and if no filter keeps the limit of the gain
 std::vector<FetchDesign> downsample_curve(int most, const RateGoal& goal = {}, const FetchOptions& options = {});

@@ -84,7 +84,7 @@ std::vector<Unknown> move_unknowns(const FetchPattern& pattern, const SymmetricG
 }
 
 void weigh(FetchPattern& pattern, const SymmetricGrid& grid, const RateGoal& goal, GainLimit* limit) {
-    Fit best = fit(grid, weight_unknowns(pattern, grid, goal), limit);
+    GridFit best = fit(grid, weight_unknowns(pattern, grid, goal), limit);
     pattern.weights = std::move(best.values);
     pattern.error = best.error;
 }
@@ -99,7 +99,7 @@ FetchPattern stepped(const FetchPattern& pattern, const SymmetricGrid& grid, con
                      double damping) {
     std::vector<Unknown> unknowns = move_unknowns(pattern, grid, goal, damping);
     for (Unknown& weight : weight_unknowns(pattern, grid, goal)) unknowns.push_back(std::move(weight));
-    const Fit step = fit(grid, unknowns, limit);
+    const GridFit step = fit(grid, unknowns, limit);
     FetchPattern next = pattern;
     if (step.values.empty()) return next;
     for (std::size_t k = 0; k < next.reaches.size(); ++k)

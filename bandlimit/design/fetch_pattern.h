@@ -1,4 +1,5 @@
 // Symmetric arrangements of bilinear reads, whose positions and weights are optimised together.
+// Stability: inner.
 #pragma once
 #include <utility>
 #include <vector>

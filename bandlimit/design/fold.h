@@ -1,4 +1,5 @@
 // Weights as linear reads between samples.
+// Stability: evolving.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,5 @@
 // Gaussian blurs for the bilinear sampler of a GPU.
+// Stability: evolving.
 #pragma once
 #include <optional>
 #include <vector>
@@ -13,7 +14,7 @@ struct GaussianOptions {
         least_squares,  ///< the smallest error, of weights that are not negative
         sampled,        ///< samples of the Gaussian
         integrated,     ///< its integrals over the samples' cells: wider, by a variance of 1/12
-        discrete        ///< exp(-sigma^2) I_n(sigma^2), whose variance is exactly sigma^2 but for the cut at its end
+        discrete        ///< exp(-sigma^2) I_n(sigma^2), whose variance is exactly sigma^2, apart from truncation
     };
 
     double sigma = 1;                 ///< samples, 0.1 to 250

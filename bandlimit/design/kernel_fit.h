@@ -1,4 +1,5 @@
 // Reconstruction kernels made to measure.
+// Stability: inner.
 #pragma once
 #include <limits>
 #include <optional>

@@ -1,4 +1,5 @@
 // How much of a measured kernel is signal.
+// Stability: evolving.
 #pragma once
 #include <span>
 

@@ -1,4 +1,5 @@
 // Least squares under linear conditions.
+// Stability: inner.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,5 +1,6 @@
 // Sums of separable weights that avoid what the best ones in the mean of squares suffer from: negative weights, and
 // weights where the shape has none.
+// Stability: evolving.
 #pragma once
 #include <functional>
 

@@ -1,4 +1,5 @@
 // Taps that undo what a kernel takes from the pass band.
+// Stability: evolving.
 #pragma once
 #include <complex>
 #include <limits>
@@ -26,7 +27,7 @@ struct SharpenDesign {
 };
 
 /// What `kernel` does to frequency f of the samples that it weighs: its weights at `phase`, or their mean over all
-/// phases, each seen from the output. Real for no phase, 0 and 1/2 but for rounding.
+/// phases, each seen from the output. Real, to rounding, without a phase and at phases 0 and 1/2.
 std::complex<double> kernel_response(const Kernel& kernel, std::optional<double> phase, double f);
 
 /// Sharpening for the samples that `kernel` weighs: before enlarging by it, or at the coarser pitch after shrinking by

@@ -1,4 +1,5 @@
 // Kernels as two one-dimensional passes, of which one or both run at a slant.
+// Stability: inner.
 #pragma once
 #include <vector>
 
@@ -48,13 +49,13 @@ struct SlantedFit {
 
 /// Passes with these steps whose weights come as near to `kernel` as may be, by alternating least squares.
 ///
-/// error    linear reads blur a little where a step is no whole number: about 1e-3 for kernels a few samples wide
+/// error    linear reads blur a little where a step is not a whole number: about 1e-3 for kernels a few samples wide
 /// throws   Error for steps that are parallel or shorter than 1/2, a kernel of more than 128 samples to a side, and as
 ///          principal_axes
 SlantedFit fit_slanted(const WeightGrid& kernel, const Step& first, const Step& second);
 
 /// The best of three pairs of steps that the covariance suggests: along rows and slanted against them, along columns
-/// and slanted against them, along both principal axes. The first two are exact, but for the reads' blur, for every
+/// and slanted against them, along both principal axes. The first two are exact, apart from the reads' blur, for every
 /// Gaussian and every box skewed so, f(x - s y) g(y) where s = xy / yy: slanted by s per row (Geusebroek, Smeulders &
 /// van de Weijer 2003, "Fast anisotropic Gauss filtering").
 SlantedFit fit_slanted(const WeightGrid& kernel);

@@ -193,7 +193,7 @@ QuadraticProgram program_of(const SymmetricGrid& grid, const std::vector<Unknown
 
 }  // namespace
 
-Fit fit(const SymmetricGrid& grid, const std::vector<Unknown>& unknowns, GainLimit* limit) {
+GridFit fit(const SymmetricGrid& grid, const std::vector<Unknown>& unknowns, GainLimit* limit) {
     QuadraticProgram program = program_of(grid, unknowns);
     const auto add_row = [&](const std::vector<double>& row) {
         std::vector<double> up, down;
@@ -209,7 +209,7 @@ Fit fit(const SymmetricGrid& grid, const std::vector<Unknown>& unknowns, GainLim
     for (int round = 0; round < 100; ++round) {
         const std::optional<std::vector<double>> values = solve(program);
         if (!values) return {};
-        Fit result{*values, std::vector<double>(grid.size()), 0};
+        GridFit result{*values, std::vector<double>(grid.size()), 0};
         for (std::size_t k = 0; k < unknowns.size(); ++k)
             for (std::size_t u = 0; u < grid.size(); ++u) result.weights[u] += result.values[k] * unknowns[k].column[u];
         result.error = grid.error(result.weights);

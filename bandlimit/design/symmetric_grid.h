@@ -1,4 +1,5 @@
 // Weights with the symmetries of a line or a square, fitted to the ideal low-pass of passband.h.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -66,7 +67,7 @@ struct Unknown {
     double damping = 0;  ///< times its square is added to the error
 };
 
-struct Fit {
+struct GridFit {
     std::vector<double> values;                              ///< of the unknowns
     std::vector<double> weights;                             ///< sum of values times columns
     double error = std::numeric_limits<double>::infinity();  ///< the grid's, plus damping
@@ -81,6 +82,6 @@ struct GainLimit {
 
 /// The unknowns for which the weights sum to 1 and have the least error plus damping; an infinite error if there are
 /// none.
-Fit fit(const SymmetricGrid& grid, const std::vector<Unknown>& unknowns, GainLimit* limit);
+GridFit fit(const SymmetricGrid& grid, const std::vector<Unknown>& unknowns, GainLimit* limit);
 
 }  // namespace bandlimit

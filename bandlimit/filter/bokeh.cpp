@@ -6,6 +6,7 @@
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/kernel/shapes.h"
+#include "bandlimit/resample/row_store.h"
 
 namespace bandlimit {
 namespace {
@@ -58,6 +59,31 @@ std::span<float> row_of(Image<float>& image, int y) {
     return {&image.view()(0, y), static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels())};
 }
 
+/// The rows of a run, raised, through the convolution, and back.
+bool run_boosted(const RowFilter& convolution, float gamma, bool premultiply, const RowRun& run) {
+    const SourceRows& source = run.sources[0];
+    const TargetRows& target = run.target;
+    const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
+    const bool multiplied = premultiply || source.encoding.associated;
+    const int alpha = source.encoding.alpha;
+    const Encoding between{Transfer::linear, alpha, multiplied};
+    Image<float> bright(from.width, from.height, run.channels, Layout::interleaved);
+    Image<float> blurred(to.width, to.height, run.channels, Layout::interleaved);
+    for_rows(from.height, run.parallel, [&](int y) {
+        decode_row(source.samples, y, source.encoding, premultiply, row_of(bright, y));
+        raise(row_of(bright, y), run.channels, alpha, multiplied, gamma);
+    });
+    convolution.run({bright.view(), source.first_row, between}, {blurred.view(), target.first_row, between, {}},
+                    run.parallel);
+    std::atomic<bool> lost = false;
+    for_rows(to.height, run.parallel, [&](int y) {
+        raise(row_of(blurred, y), run.channels, alpha, multiplied, 1 / gamma);
+        if (RowStore(run, 0, to.width, premultiply).store(row_of(blurred, y), target.first_row + y)) lost = true;
+        run.monitor.made(std::int64_t{to.width} * run.channels);
+    });
+    return lost;
+}
+
 }  // namespace
 
 WeightGrid aperture(std::string_view text, double radius) {
@@ -86,30 +112,17 @@ WeightGrid aperture(std::string_view text, double radius) {
     return grid;
 }
 
-bool run_boosted(const Convolution& convolution, double gamma, bool premultiply, const SourceRows& source,
-                 const TargetRows& target, Parallel parallel) {
-    if (!(gamma > 0 && std::isfinite(gamma))) fail("run_boosted: gamma = ", gamma, "; pass a finite one above 0");
-    const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
-    check_encoding("run_boosted", source.encoding, from.channels);
-    check_encoding("run_boosted", target.encoding, to.channels);
-    check_apart("run_boosted", source.samples, target.samples);
-    const bool multiplied = premultiply || source.encoding.associated;
-    const int alpha = source.encoding.alpha;
-    const Encoding between{Transfer::linear, alpha, multiplied};
-    Image<float> bright(from.width, from.height, from.channels, Layout::interleaved);
-    Image<float> blurred(to.width, to.height, to.channels, Layout::interleaved);
-    for_rows(from.height, parallel, [&](int y) {
-        decode_row(source.samples, y, source.encoding, premultiply, row_of(bright, y));
-        raise(row_of(bright, y), from.channels, alpha, multiplied, static_cast<float>(gamma));
-    });
-    convolution.run({bright.view(), source.first_row, between}, {blurred.view(), target.first_row, between, {}},
-                    parallel);
-    std::atomic<bool> lost = false;
-    for_rows(to.height, parallel, [&](int y) {
-        raise(row_of(blurred, y), to.channels, alpha, multiplied, static_cast<float>(1 / gamma));
-        if (encode_row(row_of(blurred, y), multiplied, target.samples, y, target.encoding)) lost = true;
-    });
-    return lost;
+RowFilter boosted(const Convolution& convolution, double gamma, bool premultiply) {
+    if (!(gamma > 0 && std::isfinite(gamma))) fail("boosted: gamma = ", gamma, "; pass a finite one above 0");
+    const RowFilter filter = convolution.rows();
+    RowProtocol protocol = filter.protocol();
+    protocol.name = "boosted";
+    protocol.start = [filter, gamma, premultiply](const RowRun& run) {
+        return RowWork{1, [filter, gamma, premultiply, &run](int) {
+                           return run_boosted(filter, static_cast<float>(gamma), premultiply, run);
+                       }};
+    };
+    return RowFilter(std::move(protocol));
 }
 
 }  // namespace bandlimit

@@ -1,4 +1,5 @@
 // Blur as lenses make it: every bright spot becomes a picture of the aperture.
+// Stability: evolving.
 #pragma once
 #include <string_view>
 
@@ -16,14 +17,13 @@ namespace bandlimit {
 /// throws   Error as parse_shape, and for a radius out of range
 WeightGrid aperture(std::string_view text, double radius);
 
-/// Runs a convolution on colours raised to the power `gamma`, and takes the root of what comes out: lights become as
-/// bright as they are in the world, though the picture has them at white. Of negative values the sign stays. Alpha is
-/// left alone, and is divided out of colours before they are raised; the last channels see no difference otherwise.
+/// A convolution of colours raised to the power `gamma`, and the root of what comes out: lights become as bright as they
+/// are in the world, though the picture has them at white. Of negative values the sign stays. Alpha is left alone, and
+/// is divided out of colours before they are raised; the last channels see no difference otherwise.
 ///
-/// memory   the rows of source and target as floats
-/// returns  as Convolution::run; throws Error as that, and unless gamma is finite and above 0
+/// memory   the rows of source and target as floats, beside those of the convolution
+/// throws   Error unless gamma is finite and above 0
 /// source   Wronski 2020, who takes 7 ("Separate your filters!"); 2.2 and less is what tone curves commonly hide
-bool run_boosted(const Convolution& convolution, double gamma, bool premultiply, const SourceRows& source,
-                 const TargetRows& target, Parallel parallel = {});
+RowFilter boosted(const Convolution& convolution, double gamma, bool premultiply);
 
 }  // namespace bandlimit

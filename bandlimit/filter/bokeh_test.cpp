@@ -55,7 +55,7 @@ Image<float> boosted(const Image<float>& image, double gamma, bool premultiply, 
     const Convolution convolution(with_unit_sum(centred(aperture("disc:1", 3))), image.width(), image.height(),
                                   {.premultiply = premultiply});
     Image<float> out(image.width(), image.height(), image.channels(), Layout::interleaved);
-    run_boosted(convolution, gamma, premultiply, {image.view(), 0, encoding}, {out.view(), 0, encoding, {}}, {2});
+    boosted(convolution, gamma, premultiply).run({image.view(), 0, encoding}, {out.view(), 0, encoding, {}}, {2});
     return out;
 }
 
@@ -85,6 +85,21 @@ TEST(Boost, LeavesConstantsAndAlphaAlone) {
             for (int i = 0; i < 480; ++i)  // powers and roots in double, each stored in float: 7 roundings at most
                 ASSERT_NEAR(found.view().data[i], image.view().data[i], 2e-6);
         }
+}
+
+TEST(Boost, ReportsProgressThatGrowsToOne) {
+    const Image<float> image(40, 300, 3);
+    Image<float> out(40, 300, 3);
+    for (const Method method : {Method::direct, Method::fft}) {
+        const Convolution convolution(with_unit_sum(centred(aperture("disc:1", 3))), 40, 300, {.method = method});
+        double last = 0;
+        boosted(convolution, 7, true)
+            .run(SourceRows{image.view(), 0, {}}, {out.view(), 0, {}, {}}, {2}, [&](double done) {
+                EXPECT_GT(done, last);
+                last = done;
+            });
+        EXPECT_EQ(last, 1);
+    }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/kernel/low_rank.h"
+#include "bandlimit/kernel/taps.h"
 
 namespace bandlimit {
 namespace {
@@ -17,8 +18,9 @@ constexpr int largest_for_svd = 512;  // weights a side: half a minute of decomp
 // filter/convolve_bench.cpp measures them.
 constexpr double product_time = 1.6, butterfly_time = 260;
 
-double magnitude(const std::vector<double>& weights) {
-    return std::accumulate(weights.begin(), weights.end(), 0.0, [](double s, double w) { return s + std::abs(w); });
+double magnitude(const WeightGrid& grid) {
+    return std::accumulate(grid.weights.begin(), grid.weights.end(), 0.0,
+                           [](double s, double w) { return s + std::abs(w); });
 }
 
 /// The products that `grid` is, but for what rounding its weights to floats changes anyway; empty where to find them
@@ -29,7 +31,7 @@ Terms exact_terms(const WeightGrid& grid, Method method) {
     if (!is_asked && !is_small) return {};
     const Svd found = svd_of(grid);
     // An output changes by at most the sum of magnitudes of what is left away, which its energy bounds.
-    const double allowed = 0x1p-24 * magnitude(grid.weights) / std::sqrt(double(grid.width) * grid.height);
+    const double allowed = 0x1p-24 * magnitude(grid) / std::sqrt(double(grid.width) * grid.height);
     double energy = 0;
     std::size_t rank = found.values.size();
     for (; rank > 1; --rank) {
@@ -132,11 +134,7 @@ double sum_of(const ConvolutionWeights& weights) {
 }
 
 bool cancel(const ConvolutionWeights& weights) {
-    double size = 0;
-    if (const auto* grid = std::get_if<WeightGrid>(&weights.weights)) size = magnitude(grid->weights);
-    else
-        for (const Term& term : std::get<Terms>(weights.weights)) size += magnitude(term.column) * magnitude(term.row);
-    return !(std::abs(sum_of(weights)) > 1e-9 * size);
+    return cancels(sum_of(weights), std::visit([](const auto& w) { return magnitude(w); }, weights.weights));
 }
 
 ConvolutionWeights turned(ConvolutionWeights weights) {
@@ -154,13 +152,13 @@ ConvolutionWeights turned(ConvolutionWeights weights) {
 }
 
 ConvolutionWeights with_unit_sum(ConvolutionWeights weights) {
+    if (auto* terms = std::get_if<Terms>(&weights.weights)) {
+        *terms = with_unit_sum(std::move(*terms));
+        return weights;
+    }
     const double sum = sum_of(weights);
     if (cancel(weights)) fail("with_unit_sum: weights that sum to ", sum, " cannot be divided by it; keep their sum");
-    if (auto* of_grid = std::get_if<WeightGrid>(&weights.weights))
-        for (double& w : of_grid->weights) w /= sum;
-    else
-        for (Term& term : std::get<Terms>(weights.weights))
-            for (double& w : term.column) w /= sum;
+    for (double& w : std::get<WeightGrid>(weights.weights).weights) w /= sum;
     return weights;
 }
 
@@ -186,25 +184,11 @@ Convolution::Convolution(const ConvolutionWeights& weights, int width, int heigh
         fail("Convolution: ", size.width, " x ", size.height, " weights by the method ", name_of(chosen_.method),
              " take ", chosen_.bytes / 1e9, " GB of memory, and ", double(options.most_bytes) / 1e9,
              " may be taken; pass fewer weights, or another method");
-    if (chosen_.method == Method::fft)
-        filter_.emplace(FftFilter(grid_of(weights), weights.first_x, weights.first_y, width, height, options.edge_x,
-                                  options.edge_y, options.premultiply));
-    else
-        filter_.emplace(TermFilter(chosen_.method == Method::direct ? direct_terms(grid_of(weights)) : terms,
-                                   weights.first_x, weights.first_y, width, height, options.edge_x, options.edge_y,
-                                   options.premultiply));
-}
-
-std::uint64_t Convolution::bytes(int channels, Parallel parallel) const {
-    return std::visit([&](const auto& f) { return f.bytes(channels, parallel); }, *filter_);
-}
-
-IndexRange Convolution::rows_needed(int first, int last) const {
-    return std::visit([&](const auto& f) { return f.rows_needed(first, last); }, *filter_);
-}
-
-bool Convolution::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
-    return std::visit([&](const auto& f) { return f.run(source, target, parallel); }, *filter_);
+    const FilterDomain domain{width, height, options.edge_x, options.edge_y, options.premultiply};
+    if (chosen_.method == Method::fft) rows_ = fft_filter(grid_of(weights), weights.first_x, weights.first_y, domain);
+    else if (chosen_.method == Method::direct)
+        rows_ = term_filter(direct_terms(grid_of(weights)), weights.first_x, weights.first_y, domain);
+    else rows_ = term_filter(terms, weights.first_x, weights.first_y, domain);
 }
 
 }  // namespace bandlimit

@@ -1,4 +1,5 @@
 // Weights in two dimensions, run over images in the cheapest way that there is.
+// Stability: evolving.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -43,7 +44,7 @@ WeightGrid grid_of(const ConvolutionWeights& weights);
 double sum_of(const ConvolutionWeights& weights);
 /// The same weights, turned by half a turn: what convolution in the textbook's sense runs.
 ConvolutionWeights turned(ConvolutionWeights weights);
-/// Whether their sum is nothing to divide by: below 1e-9 of that of their magnitudes, or of those of their products.
+/// Whether they cancel, by the rule of kernel/taps.h; magnitudes of products stand for those of their weights.
 bool cancel(const ConvolutionWeights& weights);
 /// The same, divided by their sum.
 /// throws   Error where they cancel()
@@ -52,7 +53,7 @@ ConvolutionWeights with_unit_sum(ConvolutionWeights weights);
 struct ConvolveOptions {
     Method method = Method::automatic;
     Edge edge_x = Edge::renormalize, edge_y = Edge::renormalize;
-    /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Without an alpha channel no matter.
+    /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Has no effect without alpha.
     bool premultiply = true;
     /// Memory for what is worked out before a convolution runs, above which it is refused.
     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -70,7 +71,7 @@ struct MethodCost {
 /// A convolution ready to run on blocks of rows. Approximations are not its business: low_rank() makes products that
 /// stand for a grid, and those are run as they are.
 ///
-/// error    direct, separable and low_rank as TermFilter, fft as FftFilter. A grid that runs as products differs by no
+/// error    direct, separable and low_rank as term_filter(), fft as fft_filter(). A grid that runs as products differs by no
 ///          more than rounding its weights to floats
 /// cost     chosen(); for a grid of up to 512 x 512 or method low_rank, that of its singular value decomposition too
 class Convolution {
@@ -83,18 +84,21 @@ public:
     const MethodCost& chosen() const { return chosen_; }
     /// All that was to choose from, the cheapest first.
     const std::vector<MethodCost>& candidates() const { return candidates_; }
-    /// About how much memory run() takes, in bytes.
-    std::uint64_t bytes(int channels, Parallel parallel) const;
 
-    /// As Resizer.
-    IndexRange rows_needed(int first, int last) const;
-    /// As Resizer::run, without background.
-    bool run(const SourceRows& source, const TargetRows& target, Parallel parallel = {}) const;
+    /// What runs, for code that takes any filter.
+    const RowFilter& rows() const { return *rows_; }
+    /// As those of RowFilter.
+    std::uint64_t bytes(int channels, const Parallel& parallel) const { return rows_->bytes(channels, parallel); }
+    IndexRange rows_needed(int first, int last) const { return rows_->rows_needed(first, last); }
+    RunReport run(const SourceRows& source, const TargetRows& target, const Parallel& parallel = {},
+                  const RowProgress& progress = {}) const {
+        return rows_->run(source, target, parallel, progress);
+    }
 
 private:
     std::vector<MethodCost> candidates_;
     MethodCost chosen_;
-    std::optional<std::variant<TermFilter, FftFilter>> filter_;
+    std::optional<RowFilter> rows_;  ///< always there, once constructed
 };
 
 }  // namespace bandlimit

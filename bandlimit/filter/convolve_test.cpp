@@ -259,5 +259,51 @@ TEST(FftTiles, CoverAllOutputs) {
         }
 }
 
+TEST(Convolution, OnesStayExactlyOnes) {
+    Random random(12);
+    for (const int size : {3, 8, 25}) {
+        WeightGrid disc(size, size);
+        for (double& w : disc.weights) w = random.uniform(0, 1);
+        Image<float> ones(40, 30), out(40, 30);
+        for (int y = 0; y < 30; ++y)
+            for (int x = 0; x < 40; ++x) ones.view()(x, y) = 1;
+        const ConvolveOptions options{.method = Method::direct, .edge_x = Edge::reflect, .edge_y = Edge::reflect};
+        Convolution(with_unit_sum(centred(disc)), 40, 30, options)
+            .run({View<const float>(ones.view()), 0, {}}, {out.view(), 0, {}, {}});
+        for (int y = 0; y < 30; ++y)
+            for (int x = 0; x < 40; ++x) ASSERT_EQ(out.view()(x, y), 1) << size;
+    }
+}
+
+TEST(Convolution, RenormalizesHoweverLittleIsInside) {
+    // A bell so wide and so far off that a millionth of it lies inside: all weights are positive, nothing cancels.
+    WeightGrid far(41, 1);
+    for (int x = 0; x < 41; ++x) far.at(x, 0) = std::exp(-x * x / 2.0 / 9);
+    Image<float> ones(8, 1), out(8, 1);
+    for (int x = 0; x < 8; ++x) ones.view()(x, 0) = 1;
+    Convolution({far, -18, 0}, 8, 1, {.method = Method::direct})
+        .run({View<const float>(ones.view()), 0, {}}, {out.view(), 0, {}, {}});
+    const double sum = sum_of(ConvolutionWeights{far, 0, 0});
+    for (int x = 0; x < 8; ++x) EXPECT_NEAR(out.view()(x, 0), sum, 1e-5 * sum);
+    // But what is below the digits of the sums is nothing.
+    for (int x = 0; x < 41; ++x) far.at(x, 0) = x < 5 ? 1 : 1e-12;
+    EXPECT_THROW(Convolution({far, -18, 0}, 8, 1, {.method = Method::direct}), Error);
+}
+
+// Tiles of a transform are at most 1024 rows high here: a part of the rows begins in the second one.
+TEST(Convolution, PartsOfTallImagesHaveTheBitsOfTheWhole) {
+    const int height = 2500;
+    const Image<float> image = noise(4, height, 1);
+    const ConvolutionWeights w = weights(3, 9, -1, -4);
+    const ConvolveOptions options{.method = Method::fft};
+    const Image<float> whole = convolved(image, w, options);
+    const Convolution convolution(w, 4, height, options);
+    const int first = 1300, rows = 900;
+    Image<float> part(4, rows);
+    convolution.run({View<const float>(image.view()), 0, {}}, {part.view(), first, {}, {}});
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < 4; ++x) ASSERT_EQ(part.view()(x, y), whole.view()(x, first + y)) << y;
+}
+
 }  // namespace
 }  // namespace bandlimit

@@ -1,12 +1,16 @@
 #include "bandlimit/filter/fft_filter.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/math/fft.h"
+#include "bandlimit/resample/border_scale.h"
 #include "bandlimit/resample/row_loader.h"
+#include "bandlimit/resample/row_store.h"
 
 namespace bandlimit {
 namespace {
@@ -39,59 +43,58 @@ FftTiles fft_tiles(int weights, int samples) {
     return best;
 }
 
-FftFilter::FftFilter(const WeightGrid& weights, int first_x, int first_y, int width, int height, Edge edge_x,
-                     Edge edge_y, bool premultiply)
-    : taps_x_(weights.width),
-      taps_y_(weights.height),
-      first_x_(first_x),
-      first_y_(first_y),
-      width_(width),
-      height_(height),
-      edge_x_(edge_x),
-      edge_y_(edge_y),
-      premultiply_(premultiply) {
-    if (width < 1 || height < 1 || weights.width < 1 || weights.height < 1)
-        fail("FftFilter: ", weights.width, " x ", weights.height, " weights on ", width, " x ", height,
+namespace {
+
+/// Weights ready to run.
+struct FftPlan {
+    FftPlan(const WeightGrid& weights, int first_x, int first_y, const FilterDomain& domain);
+
+    double bytes(int channels, const Parallel& parallel) const {
+        const int runs = std::min(parallel.count(), x.count * y.count);
+        return runs * double(x.size) * y.size * (sizeof(Complex) + 2.0 * sizeof(float) * channels);
+    }
+    /// Those of whole tiles.
+    IndexRange rows_read(int first, int last) const {
+        const int begin = first / y.outputs * y.outputs;
+        const int end = std::min(domain.height, ((last - 1) / y.outputs + 1) * y.outputs);
+        return {begin + first_y, end + first_y + taps_y - 1};
+    }
+
+    FilterDomain domain;
+    int taps_x, taps_y, first_x, first_y;
+    FftTiles x, y;
+    ComplexGrid response;  ///< of the weights, conjugate
+    BorderScale border;
+};
+
+FftPlan::FftPlan(const WeightGrid& weights, int first_of_x, int first_of_y, const FilterDomain& on)
+    : domain(on), taps_x(weights.width), taps_y(weights.height), first_x(first_of_x), first_y(first_of_y) {
+    if (on.width < 1 || on.height < 1 || weights.width < 1 || weights.height < 1)
+        fail("fft_filter: ", weights.width, " x ", weights.height, " weights on ", on.width, " x ", on.height,
              " samples; pass at least one of each");
     for (const double w : weights.weights)
-        if (!std::isfinite(w)) fail("FftFilter: a weight is ", w, "; pass finite ones");
-    border_ = BorderScale(weights, first_x, first_y, width, height, edge_x, edge_y);
-    x_ = fft_tiles(weights.width, width);
-    y_ = fft_tiles(weights.height, height);
-    response_ = ComplexGrid(x_.size, y_.size);
-    for (int y = 0; y < weights.height; ++y)
-        for (int x = 0; x < weights.width; ++x) response_.at(x, y) = weights.at(x, y);
-    fft(response_);
-    for (Complex& value : response_.values) value = std::conj(value);
-}
-
-std::uint64_t FftFilter::bytes(int channels, Parallel parallel) const {
-    const double samples = static_cast<double>(x_.size) * y_.size;
-    const int runs = std::min(parallel.count(), x_.count * y_.count);
-    return static_cast<std::uint64_t>(runs * samples * (sizeof(Complex) + 2.0 * sizeof(float) * channels));
-}
-
-IndexRange FftFilter::rows_needed(int first, int last) const {
-    if (first < 0 || first >= last || last > height_)
-        fail("FftFilter::rows_needed: rows ", first, " to ", last, " of ", height_, "; pass a part of them");
-    const int begin = first / y_.outputs * y_.outputs;
-    const int end = std::min(height_, ((last - 1) / y_.outputs + 1) * y_.outputs);
-    const IndexRange stored = stored_indices({begin + first_y_, end + first_y_ + taps_y_ - 1}, height_, edge_y_);
-    return stored.begin < stored.end ? stored : IndexRange{0, 0};
+        if (!std::isfinite(w)) fail("fft_filter: a weight is ", w, "; pass finite ones");
+    border = BorderScale(weights, first_x, first_y, on.width, on.height, on.edge_x, on.edge_y);
+    x = fft_tiles(weights.width, on.width);
+    y = fft_tiles(weights.height, on.height);
+    response = ComplexGrid(x.size, y.size);
+    for (int j = 0; j < weights.height; ++j)
+        for (int i = 0; i < weights.width; ++i) response.at(i, j) = weights.at(i, j);
+    fft(response);
+    for (Complex& value : response.values) value = std::conj(value);
 }
 
 /// Computes tiles, in one thread.
 class FftRun {
 public:
-    FftRun(const FftFilter& filter, const SourceRows& source, const TargetRows& target)
-        : filter_(filter), source_(source), target_(target), channels_(shape_of(source.samples).channels) {}
+    FftRun(const FftPlan& plan, const RowRun& run) : plan_(plan), run_(run), channels_(run.channels) {}
 
     /// Tile (i, j): those of its rows that are in the target. Returns whether something not finite was lost.
     bool tile(int i, int j) {
-        const int left = i * filter_.x_.outputs, top = j * filter_.y_.outputs;
-        const int width = std::min(filter_.x_.outputs, filter_.width_ - left);
-        const int height = std::min(filter_.y_.outputs, filter_.height_ - top);
-        load(left, top, width + filter_.taps_x_ - 1, height + filter_.taps_y_ - 1);
+        const int left = i * plan_.x.outputs, top = j * plan_.y.outputs;
+        const int width = std::min(plan_.x.outputs, plan_.domain.width - left);
+        const int height = std::min(plan_.y.outputs, plan_.domain.height - top);
+        load(left, top, width + plan_.taps_x - 1, height + plan_.taps_y - 1);
         for (int c = 0; c < channels_; c += 2) filter(c, width, height);
         return store(left, top, width, height);
     }
@@ -100,14 +103,14 @@ private:
     /// Decodes the samples that the tile reads, and takes out what is not finite.
     void load(int left, int top, int width, int height) {
         input_ = Image<float>(width, height, channels_, Layout::interleaved);
-        const IndexRange columns{left + filter_.first_x_, left + filter_.first_x_ + width};
-        const RowLoader loader(source_, columns, filter_.height_, filter_.edge_x_, filter_.edge_y_,
-                               filter_.premultiply_);
+        const IndexRange columns{left + plan_.first_x, left + plan_.first_x + width};
+        const RowLoader loader(run_.sources[0], columns, plan_.domain.height, plan_.domain.edge_x, plan_.domain.edge_y,
+                               plan_.domain.premultiply);
         lost_.clear();
         const std::size_t length = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels_);
         for (int y = 0; y < height; ++y) {
             float* const row = &input_.view()(0, y);
-            loader.load(top + filter_.first_y_ + y, row);
+            loader.load(top + plan_.first_y + y, row);
             for (std::size_t k = 0; k < length; ++k) {
                 if (std::isfinite(row[k])) continue;
                 row[k] = 0;
@@ -120,12 +123,12 @@ private:
     void filter(int c, int width, int height) {
         const bool both = c + 1 < channels_;
         const View<const float> in = input_.view();
-        grid_ = ComplexGrid(filter_.x_.size, filter_.y_.size);
+        grid_ = ComplexGrid(plan_.x.size, plan_.y.size);
         for (int y = 0; y < in.height; ++y)
             for (int x = 0; x < in.width; ++x)
                 grid_.at(x, y) = {double(in(x, y, c)), both ? double(in(x, y, c + 1)) : 0.0};
         fft(grid_);
-        for (std::size_t k = 0; k < grid_.values.size(); ++k) grid_.values[k] *= filter_.response_.values[k];
+        for (std::size_t k = 0; k < grid_.values.size(); ++k) grid_.values[k] *= plan_.response.values[k];
         inverse_fft(grid_);
         if (c == 0) output_ = Image<float>(width, height, channels_, Layout::interleaved);
         const View<float> out = output_.view();
@@ -149,14 +152,14 @@ private:
             for (int c = 0; c < channels_; ++c) {
                 int inside = 0;  // how many of those that the output at x reads
                 const auto at = [&](int x) { return row[static_cast<std::size_t>(x * channels_ + c)]; };
-                for (int x = 0; x < filter_.taps_x_ - 1; ++x) inside += at(x);
+                for (int x = 0; x < plan_.taps_x - 1; ++x) inside += at(x);
                 for (int x = 0; x < width; ++x) {
-                    inside += at(x + filter_.taps_x_ - 1);
+                    inside += at(x + plan_.taps_x - 1);
                     hit[static_cast<std::size_t>(x * channels_ + c)] = inside > 0;
                     inside -= at(x);
                 }
             }
-            for (int i = std::max(0, y - filter_.taps_y_ + 1); i <= std::min(y, height - 1); ++i)
+            for (int i = std::max(0, y - plan_.taps_y + 1); i <= std::min(y, height - 1); ++i)
                 for (std::size_t k = 0; k < hit.size(); ++k)
                     if (hit[k]) (&out(0, i))[k] = std::numeric_limits<float>::quiet_NaN();
         }
@@ -164,16 +167,17 @@ private:
 
     bool store(int left, int top, int width, int height) {
         spread_lost(width, height);
-        const AnyView targets = columns_of(target_.samples, left, width);
-        const int target_end = target_.first_row + shape_of(target_.samples).height;
+        RowStore store(run_, left, width, plan_.domain.premultiply);
+        const IndexRange rows = run_.rows();
+        const int first = std::max(top, rows.begin), last = std::min(top + height, rows.end);
         bool lost = false;
-        for (int y = std::max(top, target_.first_row); y < std::min(top + height, target_end); ++y) {
+        for (int y = first; y < last; ++y) {
             const std::span<float> row{&output_.view()(0, y - top),
                                        static_cast<std::size_t>(width) * static_cast<std::size_t>(channels_)};
-            filter_.border_.apply(row, left, y, channels_);
-            lost |= encode_row(row, filter_.premultiply_ || source_.encoding.associated, targets, y - target_.first_row,
-                               target_.encoding);
+            plan_.border.apply(row, left, y, channels_);
+            lost |= store.store(row, y);
         }
+        run_.monitor.made(std::int64_t{last - first} * width * channels_);
         return lost;
     }
 
@@ -181,37 +185,34 @@ private:
         int y, k;
     };
 
-    const FftFilter& filter_;
-    const SourceRows& source_;
-    const TargetRows& target_;
+    const FftPlan& plan_;
+    const RowRun& run_;
     int channels_;
     Image<float> input_, output_;
     ComplexGrid grid_;
     std::vector<Sample> lost_;  ///< not finite; row after row
 };
 
-bool FftFilter::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
-    const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
-    if (from.width != width_ || to.width != width_ || from.channels != to.channels || from.channels < 1)
-        fail("FftFilter::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
-             " with ", to.channels, "; need ", width_, " with equal channels");
-    check_encoding("FftFilter::run", source.encoding, from.channels);
-    check_encoding("FftFilter::run", target.encoding, to.channels);
-    check_apart("FftFilter::run", source.samples, target.samples);
-    if (to.height == 0) return false;
-    const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
-    if (needed.begin < needed.end && (needed.begin < source.first_row || needed.end > source.first_row + from.height))
-        fail("FftFilter::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
-             needed.begin, " to ", needed.end, " are needed");
-    const int first = target.first_row / y_.outputs;
-    const int rows = (target.first_row + to.height - 1) / y_.outputs - first + 1;
-    std::atomic<bool> lost = false;
-    parallel_for(std::ptrdiff_t{rows} * x_.count, 1, parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        FftRun run(*this, source, target);
-        for (std::ptrdiff_t i = begin; i < end; ++i)
-            if (run.tile(static_cast<int>(i % x_.count), first + static_cast<int>(i / x_.count))) lost = true;
-    });
-    return lost;
+RowWork start(const FftPlan& plan, const RowRun& run) {
+    const IndexRange rows = run.rows();
+    const int first = rows.begin / plan.y.outputs, last = (rows.end - 1) / plan.y.outputs + 1;
+    return {(last - first) * plan.x.count, [&plan, &run, first](int piece) {
+                return FftRun(plan, run).tile(piece % plan.x.count, first + piece / plan.x.count);
+            }};
+}
+
+}  // namespace
+
+RowFilter fft_filter(const WeightGrid& weights, int first_x, int first_y, const FilterDomain& domain) {
+    const auto plan = std::make_shared<const FftPlan>(weights, first_x, first_y, domain);
+    return RowFilter(
+        {.name = "fft_filter",
+         .sources = {{domain.width, domain.height, domain.edge_y}},
+         .width = domain.width,
+         .height = domain.height,
+         .rows_read = [plan](std::size_t, int first, int last) { return plan->rows_read(first, last); },
+         .bytes = [plan](int channels, const Parallel& parallel) { return plan->bytes(channels, parallel); },
+         .start = [plan](const RowRun& run) { return start(*plan, run); }});
 }
 
 }  // namespace bandlimit

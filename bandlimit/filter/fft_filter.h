@@ -1,10 +1,9 @@
 // Convolution by Fourier transforms.
+// Stability: evolving.
 #pragma once
 
 #include "bandlimit/kernel/terms.h"
-#include "bandlimit/math/fft.h"
-#include "bandlimit/resample/border_scale.h"
-#include "bandlimit/resample/resize.h"
+#include "bandlimit/resample/term_filter.h"
 
 namespace bandlimit {
 
@@ -17,7 +16,8 @@ struct FftTiles {
 /// most 1024 samples or four times the weights.
 FftTiles fft_tiles(int weights, int samples);
 
-/// Any weights, at a cost that hardly depends on how many they are.
+/// Any weights, at a cost that hardly depends on how many they are. Weight (0, 0) multiplies the sample at
+/// (x + first_x, y + first_y).
 ///
 /// Tiles of the image are transformed in double, two channels at a time as the parts of complex numbers. What is not
 /// finite is left out of that, where it would reach all of a tile.
@@ -27,31 +27,7 @@ FftTiles fft_tiles(int weights, int samples);
 ///         number of threads, and for parts of an image
 /// memory  per thread 16 bytes per sample of a tile, and once more for the weights
 /// cost    docs/convolve.md
-class FftFilter {
-public:
-    /// Weight (0, 0) of `weights` multiplies the sample at (x + first_x, y + first_y).
-    /// throws  Error for empty weights or such as are not finite, width or height < 1, and as BorderScale
-    FftFilter(const WeightGrid& weights, int first_x, int first_y, int width, int height, Edge edge_x, Edge edge_y,
-              bool premultiply);
-
-    /// About how much memory run() takes beside what this holds, in bytes.
-    std::uint64_t bytes(int channels, Parallel parallel) const;
-
-    /// The stored source rows [begin, end) that output rows [first, last) are made of: those of whole tiles.
-    IndexRange rows_needed(int first, int last) const;
-
-    /// As Resizer::run, without background.
-    bool run(const SourceRows& source, const TargetRows& target, Parallel parallel) const;
-
-private:
-    friend class FftRun;
-
-    ComplexGrid response_;  ///< of the weights, conjugate
-    FftTiles x_, y_;
-    int taps_x_, taps_y_, first_x_, first_y_, width_, height_;
-    Edge edge_x_, edge_y_;
-    BorderScale border_;
-    bool premultiply_;
-};
+/// throws  Error for empty weights or such as are not finite, width or height < 1, and as BorderScale
+RowFilter fft_filter(const WeightGrid& weights, int first_x, int first_y, const FilterDomain& domain);
 
 }  // namespace bandlimit

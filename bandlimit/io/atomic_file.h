@@ -1,4 +1,5 @@
 // Files that appear whole or not at all.
+// Stability: evolving.
 #pragma once
 #include <cstddef>
 #include <cstdint>

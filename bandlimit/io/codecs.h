@@ -1,5 +1,6 @@
 // What this room asks of a library of codecs. Such a library is a folder of this room, as oiio/, and gives a table of
 // functions; nothing outside the folder knows the library's headers. Not for callers.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <cstdint>

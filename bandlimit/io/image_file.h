@@ -1,4 +1,5 @@
 // Image files: whole or by blocks of rows, through OpenImageIO.
+// Stability: stable.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -46,10 +47,9 @@ struct ImageInfo {
 ///          half a code of the product.
 /// cost     no more than the rows asked for and one row of tiles, strips or compressed blocks, except for files that
 ///          are stored sideways, upside down, interlaced or progressively, and for WebP and PNM
-/// threads  how many may decode: 0 all cores, 1 the caller's alone. The pool belongs to the process: files that are
-/// open
-///          at the same time share the one of the first
-/// throws   std::runtime_error "PATH: what is wrong; what to do" from every function, for files that are missing, no
+/// threads  how many may decode: 0 for all cores, 1 for only the caller's. The pool belongs to the process: files that
+///          are open at the same time share the pool of the first
+/// throws   std::runtime_error "PATH: what is wrong; what to do" from every function, for files that are missing, not
 ///          images, truncated, or too large for this machine's memory; Error for rows or views that do not fit
 class ImageReader {
 public:
@@ -75,14 +75,14 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// What a new file shall be.
+/// What kind of file to write.
 struct ImageTarget {
     int width = 0, height = 0;
     std::vector<std::string> channel_names;
     Depth depth = Depth::u8;
     int alpha = -1;
     Transfer transfer = Transfer::srgb;               ///< noted in the file where the format can
-    bool is_data = false;                             ///< values are no colours: no colour space is noted
+    bool is_data = false;                             ///< values are not colours: no colour space is recorded
     const ImageReader::Metadata* metadata = nullptr;  ///< taken over, with ICC profile, if not null
     int tile = 0;                                     ///< side of square tiles, see check_tile(); 0 stores rows
 };
@@ -111,7 +111,7 @@ void check_tile(const FormatAbilities& format, int tile);
 
 /// Writes a file beside `path` and renames it when all is well: the file appears whole or not at all.
 ///
-/// A path that exists and is no regular file is refused, before its extension is looked at; directories are not
+/// A path that exists and is not a regular file is refused before its extension is checked; directories are not
 /// created. A TIFF that could grow beyond 4 GB is written as BigTIFF.
 /// cost     the rows that a codec compresses together; with tiles, a row of tiles
 /// threads  as ImageReader

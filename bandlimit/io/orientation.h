@@ -1,4 +1,5 @@
 // Upright pictures.
+// Stability: inner.
 #pragma once
 #include "bandlimit/core/view.h"
 

@@ -1,4 +1,5 @@
 // Rows as codecs want them: channels side by side, pixels side by side. Not for callers.
+// Stability: inner.
 #pragma once
 #include <algorithm>
 #include <cstddef>

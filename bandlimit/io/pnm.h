@@ -1,5 +1,6 @@
 // What OpenImageIO 2.4 lacks of PNM: it writes 8 bits only, and reads the upper half of 16-bit codes one too low.
 // Not for callers.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,5 @@
 // What can be known of a file before a codec sees it. Not for callers.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,7 +16,7 @@ struct Probe {
     bool is_interlaced = false;  ///< a PNG whose rows come out together
 };
 
-/// The format of a file that begins with `head`, as OpenImageIO names it; "" if it is none that we read.
+/// The format of a file that begins with `head`, as OpenImageIO names it; "" if it is not one that we read.
 /// `path` decides for TGA alone, which has no signature.
 std::string format_of(std::span<const unsigned char> head, const std::string& path);
 

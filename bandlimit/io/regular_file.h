@@ -1,4 +1,5 @@
 // Input files, which are regular: what waits for a writer, or never ends, is not read.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 #include <cstdio>

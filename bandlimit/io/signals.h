@@ -1,4 +1,5 @@
 // Work that no signal handler interrupts.
+// Stability: evolving.
 #pragma once
 #include <signal.h>
 

@@ -22,6 +22,7 @@
 // What applies of the five lists is there; all that are there describe one filter. Other keys are allowed and ignored.
 // Limits: 65536 numbers in a list, |first| <= 1000000, 64 terms of equal lengths, 16 components, 64 pieces
 // of 16 coefficients, 16 MB of text.
+// Stability: stable.
 #pragma once
 #include <optional>
 #include <string>

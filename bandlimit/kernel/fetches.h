@@ -1,4 +1,5 @@
-// Weights that are run by the bilinear sampler of a GPU.
+// Weights applied by the bilinear sampler of a GPU.
+// Stability: stable.
 #pragma once
 #include <vector>
 
@@ -14,7 +15,7 @@ struct Fetch {
     double x = 0, y = 0, weight = 0;
 };
 
-/// A filter as shaders run it: a sum of bilinear reads. Whoever keeps them says which factor they are for.
+/// A filter as shaders run it: a sum of bilinear reads. The factor that they are for is kept elsewhere.
 using Fetches = std::vector<Fetch>;
 
 }  // namespace bandlimit

@@ -1,4 +1,5 @@
 // Continuous reconstruction kernels.
+// Stability: stable.
 #pragma once
 #include <functional>
 #include <span>
@@ -11,7 +12,7 @@ namespace bandlimit {
 /// A continuous reconstruction kernel: an even function that is zero outside [-radius, radius].
 ///
 /// units  radius and the argument of value() in pitches of the source (of the target where the kernel is widened to
-///        minify). Values are as published, not scaled to an integral of 1: whoever makes weights normalises them.
+///        minify). Values are as published, not scaled to an integral of 1: weights are normalised when they are made.
 struct Kernel {
     /// What a kernel is in two dimensions, and how it becomes weights.
     enum class Form {
@@ -24,7 +25,7 @@ struct Kernel {
     std::string name;   ///< as parse_kernel() reads it
     double radius = 0;  ///< exact: value is 0 beyond
     std::function<double(double)>
-        value;  ///< any finite argument; at a jump the mean of both sides if not said otherwise, or as published
+        value;  ///< any finite argument; at a jump the mean of both sides unless stated otherwise
     Form form = Form::separable;
     std::vector<double>
         knots;  ///< borders in (0, radius) between which value is smooth, and not too wavy, for quadrature
@@ -48,7 +49,7 @@ Kernel mitchell();
 Kernel magic_sharp_2013();
 Kernel magic_sharp_2021();
 
-/// radius 3: the least-squares kernels that `auto` takes, to shrink and to grow or stay. See least_squares.cpp.
+/// radius 3: the least-squares kernels that `auto` uses, to shrink and to grow or stay. See least_squares.cpp.
 Kernel shrink3();  ///< approximating
 Kernel grow3();    ///< interpolating
 
@@ -61,13 +62,13 @@ Kernel kaiser(double radius, double beta);  ///< sinc(x) I0(beta sqrt(1 - (x/rad
 
 Kernel jinc_lanczos(int lobes);  ///< radial: jinc(r) jinc(r z1/zN), radius the N-th zero zN of jinc; continuous
 Kernel jinc_lanczos_unscaled(int lobes);  ///< radial: pi jinc(r) jinc(r / N) for r < N; jumps to 0 at its radius N
-Kernel radial_lanczos(int lobes);         ///< radial and WRONG: lanczos(r) is no low-pass in 2D; kept for study
+Kernel radial_lanczos(int lobes);         ///< radial and WRONG: lanczos(r) is not a low-pass in 2D; kept for study
 
 /// The kernel that `name` describes: a name of kernel_list(), with parameters after colons ("cubic:0.3:0.35"), or an
 /// alias ("bilinear").
 ///
 /// throws  Error for an unknown name (listing the names), for "bicubic" and other words that mean several kernels
-///         (naming the candidates), and for parameters that are missing, extra, no numbers or out of range
+///         (naming the candidates), and for parameters that are missing, extra, not numbers or out of range
 Kernel parse_kernel(std::string_view name);
 
 /// One line of documentation.
@@ -77,7 +78,7 @@ struct KernelInfo {
     std::string_view summary;
 };
 
-/// All kernels, in the order in which one explains them.
+/// All kernels, in the order of the documentation.
 std::span<const KernelInfo> kernel_list();
 
 inline bool is_radial(const Kernel& kernel) { return kernel.form == Kernel::Form::radial; }

@@ -1,4 +1,5 @@
 // Names with parameters after colons, as "cubic:0.25:0.375", taken apart.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -22,7 +23,7 @@ std::optional<double> parse_number(std::string_view text);
 void expect_parameters(const NameParts& parts, std::string_view kind, std::size_t count, std::string_view form);
 
 /// The parameters of `parts` as `count` numbers.
-/// throws  Error as expect_parameters, and for what is no number
+/// throws  Error as expect_parameters, and for what is not a number
 std::vector<double> number_parameters(const NameParts& parts, std::string_view kind, std::size_t count,
                                       std::string_view form);
 

@@ -1,4 +1,5 @@
 // Kernels that are polynomials between their knots.
+// Stability: stable.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// Shapes on a grid: kernels in two dimensions, to blur with or to take apart into separable ones.
+// Shapes on a grid: kernels in two dimensions, to blur with or to decompose into separable ones.
+// Stability: evolving.
 #pragma once
 #include <span>
 #include <string_view>
@@ -21,7 +22,7 @@ std::span<const ShapeInfo> shape_list();
 /// both included. Sharp shapes are 1 inside and 0 outside, where what lies on the border (within 1e-12) is outside.
 ///
 /// range    SIZE 2 to 4096; the weights are as the list says, not scaled to a sum of 1
-/// throws   Error for an unknown name (listing the names), for parameters that are missing, extra, no numbers or out
+/// throws   Error for an unknown name (listing the names), for parameters that are missing, extra, not numbers or out
 ///          of range, and where no point of the grid has a weight other than 0
 /// source   Wronski 2020, "Separate your filters! Separability, SVD and low-rank approximation of 2D image processing
 ///          filters", for disc, box, exponential, gaussian, difference-of-gaussians and polygon:50:8:0.9:0 (called

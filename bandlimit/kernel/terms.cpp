@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/kernel/taps.h"
 
 namespace bandlimit {
 namespace {
@@ -14,6 +15,10 @@ namespace {
 constexpr int longest_reach = 1'000'000;
 
 double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+double magnitude_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0, [](double s, double v) { return s + std::abs(v); });
+}
 
 void check(const Components& components, const char* function) {
     if (components.empty()) fail(function, ": no components; pass at least one");
@@ -62,12 +67,16 @@ double sum(const Terms& terms) {
     return total;
 }
 
+double magnitude(const Terms& terms) {
+    double total = 0;
+    for (const Term& term : terms) total += magnitude_of(term.column) * magnitude_of(term.row);
+    return total;
+}
+
 Terms with_unit_sum(Terms terms) {
-    double size = 0;  // of what is added up, whose rounding is the least that a sum can mean
-    for (const Term& term : terms) size += std::abs(sum_of(term.column) * sum_of(term.row));
     const double total = sum(terms);
-    if (!(std::abs(total) > 1e-12 * size))
-        fail("with_unit_sum: weights that sum to ", total, "; pass weights that do not cancel");
+    if (cancels(total, magnitude(terms)))
+        fail("with_unit_sum: weights that sum to ", total, " cannot be divided by it; keep their sum");
     for (Term& term : terms)
         for (double& weight : term.column) weight /= total;
     return terms;

@@ -1,4 +1,5 @@
-// Weights in two dimensions as sums of separable ones, and as sums of phasors that turn into such.
+// Weights in two dimensions as sums of separable products, and phasors that expand to such sums.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -33,24 +34,27 @@ struct Term {
 /// units    out(i, j) = sum_xy weight(x, y) in(i + first_x + x, j + first_y + y)
 using Terms = std::vector<Term>;
 
-/// How many weights there are along each axis.
+/// The number of weights along each axis.
 struct WeightSize {
     int width = 0, height = 0;
 
     double count() const { return double(width) * height; }
 };
 
-/// Those of the grid that `terms` stand for. Throws Error for no terms, empty ones, or lengths that differ.
+/// The size of the grid that `terms` expand to. Throws Error for no terms, empty ones, or lengths that differ.
 WeightSize size_of(const Terms& terms);
 
-/// The weights that `terms` are the sum of. Throws Error as size_of().
+/// The weights that `terms` sum to. Throws Error as size_of().
 /// cost     memory of width * height numbers, though terms have width + height
 WeightGrid expanded(const Terms& terms);
 
-/// The sum of all weights of `terms`: their gain for what is constant. Cost: linear in the weights of columns and rows.
+/// The sum of all weights of `terms`: their gain for constants. Cost: linear in the weights of columns and rows.
 double sum(const Terms& terms);
 
-/// `terms` divided by their sum, so that what is constant stays as it is. Throws Error where the weights cancel.
+/// The magnitudes of the products' weights, added up: no less than those of the weights that they sum to.
+double magnitude(const Terms& terms);
+
+/// `terms` divided by their sum, so that constants are preserved. Throws Error where they cancel(), see kernel/taps.h.
 Terms with_unit_sum(Terms terms);
 
 /// Where the first of `count` weights lies that are centred on their output: -(count / 2). An even count has no middle

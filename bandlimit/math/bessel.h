@@ -1,4 +1,5 @@
 // The special functions that kernels are made of.
+// Stability: inner.
 #pragma once
 
 namespace bandlimit {

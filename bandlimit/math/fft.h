@@ -1,4 +1,5 @@
 // Discrete Fourier transforms of any length.
+// Stability: evolving.
 #pragma once
 #include <complex>
 #include <span>

@@ -1,4 +1,5 @@
 // Linear least squares with linear conditions.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -20,8 +21,8 @@ public:
     /// Throws Error unless 1 <= unknowns <= 4096.
     explicit LeastSquares(int unknowns);
 
-    /// Adds weight (row . x - target)^2. Throws Error, as the next two, for a row of another length than the unknowns
-    /// and for what is not finite, and for a weight < 0.
+    /// Adds weight (row . x - target)^2. Throws Error, as do the next two, for a row whose length is not the number of
+    /// unknowns and for values that are not finite; also for a weight < 0.
     void minimise(std::span<const double> row, double target, double weight = 1);
     /// The condition row . x = value. Conditions may follow from each other.
     void equal(std::span<const double> row, double value);
@@ -30,9 +31,8 @@ public:
 
     /// The solution; the shortest one where several are equally good.
     ///
-    /// method   the null space of the equalities; what is free by a rank-revealing orthogonal decomposition; limits as
-    /// a
-    ///          least-distance problem, solved by non-negative least squares
+    /// method   the null space of the equalities; the free part by a rank-revealing orthogonal decomposition; limits as
+    ///          a least-distance problem, solved by non-negative least squares
     /// error    conditions are met to about 1e-13 of the size of their terms
     /// cost     (rows + conditions) unknowns^2, and as much again per inequality that holds with equality
     /// throws   Error if the conditions contradict each other, and for inequalities together with rows that leave
@@ -53,7 +53,7 @@ private:
 
 /// The x >= 0 that minimises |A x - b|. Rows of A one after the other, `b.size()` of them.
 ///
-/// throws   Error if the shapes disagree or something is not finite
+/// throws   Error if the shapes disagree or a value is not finite
 /// source   Lawson & Hanson 1974, chapter 23, algorithm NNLS
 std::vector<double> non_negative_least_squares(std::span<const double> a, std::span<const double> b);
 

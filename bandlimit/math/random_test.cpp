@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <climits>
 #include <cmath>
 #include <set>
@@ -43,6 +44,20 @@ TEST(Random, RangesHoldAndReachTheirEnds) {
     }
     EXPECT_EQ(seen, (std::set{-2, -1, 0, 1, 2, 3}));
     EXPECT_EQ(random.integer(5, 5), 5);
+}
+
+TEST(Random, HashesDependOnEveryArgumentAndItsPlace) {
+    EXPECT_EQ(hash_of(1234567), 6457827717110365317u);  // the first output of SplitMix64 for this seed
+    EXPECT_EQ(hash_of(3, 4, 5), hash_of(3, 4, 5));
+    const std::set<std::uint64_t> different{hash_of(3, 4, 5), hash_of(3, 5, 4), hash_of(4, 3, 5),
+                                            hash_of(3, 4, 6), hash_of(3, 4),    hash_of(3, 4, 5, 0)};
+    EXPECT_EQ(different.size(), 6u);
+    // Each of the 64 bits is set about half of the time: within five standard deviations.
+    constexpr int count = 4096;
+    std::array<int, 64> set_bits{};
+    for (std::uint64_t i = 0; i < count; ++i)
+        for (std::size_t b = 0; b < 64; ++b) set_bits[b] += static_cast<int>(hash_of(1, i, 7) >> b & 1);
+    for (const int n : set_bits) EXPECT_NEAR(n, count / 2.0, 5 * std::sqrt(count / 4.0));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The singular value decomposition.
+// Stability: evolving.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,7 +9,7 @@ namespace bandlimit {
 /// A matrix as a sum of products: m(row, column) = sum_k values[k] * left[k][row] * right[k][column].
 struct Svd {
     std::vector<double> values;                    ///< >= 0, the largest first; min(rows, columns) of them
-    std::vector<std::vector<double>> left, right;  ///< unit vectors, of one kind orthogonal to each other
+    std::vector<std::vector<double>> left, right;  ///< orthonormal vectors
 };
 
 /// Decomposes `matrix`, rows x columns, row after row. The sign of each pair is such that the entry of `left` that is

@@ -58,19 +58,6 @@ IndexRange indices_read(const Bank& bank, int first, int last) {
     return range;
 }
 
-IndexRange stored_indices(IndexRange read, int count, Edge edge) {
-    if (read.begin >= 0 && read.end <= count) return read;
-    if (edge == Edge::wrap || read.end - read.begin >= count) return {0, count};
-    IndexRange range{count, 0};
-    for (int v = read.begin; v < read.end; ++v) {
-        const int i = resolve(v, count, edge);
-        if (i < 0) continue;
-        range.begin = std::min(range.begin, i);
-        range.end = std::max(range.end, i + 1);
-    }
-    return range;
-}
-
 void apply(const Bank& bank, View<const float> src, View<float> dst, Parallel parallel, double antiring) {
     check_shapes("apply", bank, src.width, dst.width, same_lines(src, dst));
     check_apart("apply", src, dst);

@@ -1,4 +1,5 @@
 // Running banks over images.
+// Stability: stable.
 #pragma once
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/core/view.h"

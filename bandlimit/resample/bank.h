@@ -1,4 +1,5 @@
 // One row of weights per output sample.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -56,9 +57,9 @@ struct Bank {
 ///
 /// units    both axes in the same unit; dst may be flipped, and may reach beyond src
 /// error    2^-23 per weight, where partial sums stay below 2; mostly one rounding of the weight per addition of the
-/// row throws   Error for counts < 1, an empty or not finite interval, a radial kernel, and under zero or renormalize
-/// where
-///          an output has no weight inside the source
+///          row
+/// throws   Error for counts < 1, an empty or not finite interval, a radial kernel, and under zero or renormalize
+///          where an output has no weight inside the source
 /// cost     one evaluation of the kernel per weight of a distinct row
 Bank make_bank(const Kernel& kernel, const Axis& src, const Axis& dst, Edge edge);
 

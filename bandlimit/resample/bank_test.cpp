@@ -1,5 +1,7 @@
 #include "bandlimit/resample/bank.h"
 
+#include "bandlimit/resample/bank_builder.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -489,6 +491,34 @@ TEST(Bank, BytesAreNoLessThanItTakes) {
         }
     // Shared phases count once.
     EXPECT_LT(bank_bytes(3, Axis{1 << 20, 0, 1}, Axis{1 << 19, 0, 1}), (1u << 19) * sizeof(Bank::Output) + (1u << 16));
+}
+
+// Roundings that all go one way would add up to a shift of brightness: each weight takes over what the last one lost.
+TEST(RoundedWeights, KeepTheirSum) {
+    for (const double weight : {0.1, 0.3, -0.7, 1.0 / 3}) {
+        const std::vector<double> weights(1000, weight);
+        double sum = 0;
+        for (const float w : rounded_weights(weights)) {
+            EXPECT_NEAR(double(w), weight, std::abs(weight) * 0x1p-23);
+            sum += double(w);
+        }
+        EXPECT_NEAR(sum, 1000 * weight, std::abs(weight) * 0x1p-23);
+    }
+}
+
+TEST(BankBuilder, WhatIsNotFinishedReadsInsideAllTheSame) {
+    BankBuilder builder(4, 6, Edge::renormalize, CutRows::unfinished);
+    const PhaseRow row{-2, {0.25, 0.5, 0.25}, -2, 0};
+    for (int i = -1; i < 5; ++i) builder.add({i, 0, 0}, row);
+    const Bank bank = builder.take();
+    ASSERT_EQ(bank.output_count(), 6);
+    for (int i = 0; i < 6; ++i) {
+        EXPECT_GE(bank.first(i), 0) << i;
+        EXPECT_LE(bank.first(i) + int(bank.row(i).size()), 4) << i;
+    }
+    EXPECT_EQ(bank.row(0).size(), 1u) << "nothing lies inside";
+    EXPECT_EQ(bank.row(0)[0], 0);
+    EXPECT_EQ(bank.row(1)[0], 0.25f) << "not rescaled";
 }
 
 }  // namespace

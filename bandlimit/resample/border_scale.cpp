@@ -6,11 +6,12 @@
 #include <numeric>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/kernel/taps.h"
 
 namespace bandlimit {
 namespace {
 
-constexpr double negligible = 1e-6;  // of the sum of magnitudes: the rounding of weights to floats
+constexpr double least_inside = 1e-9;  // of all weights: differences of sums leave too few digits of less
 
 /// Numbers equal keys from 0 on; `ordinary` is the key of number 0. Examples hold an index of each number, -1 for an
 /// ordinary one that does not occur.
@@ -39,8 +40,9 @@ std::vector<std::pair<int, int>> parts_inside(int first, int weights, int count,
     return parts;
 }
 
-double magnitude_of(const std::vector<double>& weights) {
-    return std::accumulate(weights.begin(), weights.end(), 0.0, [](double s, double w) { return s + std::abs(w); });
+std::vector<double> magnitudes_of(std::vector<double> weights) {
+    for (double& w : weights) w = std::abs(w);
+    return weights;
 }
 
 /// Sums of the first 0, 1, 2, ... weights.
@@ -50,39 +52,56 @@ std::vector<double> sums_from_first(const std::vector<double>& weights) {
     return sums;
 }
 
-/// Sums over rectangles that begin at the first weight.
-std::vector<double> area_sums(const WeightGrid& weights) {
-    const auto pitch = static_cast<std::size_t>(weights.width) + 1;
-    std::vector<double> sums(pitch * (static_cast<std::size_t>(weights.height) + 1));
-    for (int y = 0; y < weights.height; ++y) {
-        double row = 0;
-        const std::size_t at = (static_cast<std::size_t>(y) + 1) * pitch + 1;
-        for (int x = 0; x < weights.width; ++x) {
-            row += weights.at(x, y);
-            const std::size_t i = at + static_cast<std::size_t>(x);
-            sums[i] = sums[i - pitch] + row;
+/// Sums of weights from `part.first` to `part.second`, by sums_from_first().
+double sum_of(const std::vector<double>& sums, std::pair<int, int> part) {
+    return sums[static_cast<std::size_t>(part.second)] - sums[static_cast<std::size_t>(part.first)];
+}
+
+/// Sums over rectangles of a grid of weights.
+class AreaSums {
+public:
+    explicit AreaSums(const WeightGrid& weights)
+        : pitch_(static_cast<std::size_t>(weights.width) + 1),
+          sums_(pitch_ * (static_cast<std::size_t>(weights.height) + 1)) {
+        for (int y = 0; y < weights.height; ++y) {
+            double row = 0;
+            for (int x = 0; x < weights.width; ++x) {
+                row += weights.at(x, y);
+                sums_[index(x + 1, y + 1)] = sums_[index(x + 1, y)] + row;
+            }
         }
     }
-    return sums;
-}
+    double whole() const { return sums_.back(); }
+    double of(std::pair<int, int> x, std::pair<int, int> y) const {
+        const auto corner = [&](int i, int j) { return sums_[index(i, j)]; };
+        return corner(x.second, y.second) - corner(x.first, y.second) - corner(x.second, y.first) +
+               corner(x.first, y.first);
+    }
+
+private:
+    std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * pitch_ + static_cast<std::size_t>(x); }
+
+    std::size_t pitch_;
+    std::vector<double> sums_;
+};
 
 }  // namespace
 
-template <class Sum>
-void BorderScale::fill(double whole, double magnitude, const std::vector<int>& example_x,
-                       const std::vector<int>& example_y, Sum sum) {
+template <class Inside>
+void BorderScale::fill(const WeightSum& whole, const std::vector<int>& example_x, const std::vector<int>& example_y,
+                       Inside inside) {
     kinds_x_ = static_cast<int>(example_x.size());
     if (example_x.size() == 1 && example_y.size() == 1) return static_cast<void>(kind_x_ = kind_y_ = {});
-    const double least = negligible * magnitude;
-    if (!(std::abs(whole) > least))
-        fail("Edge::renormalize: weights that sum to ", whole, " cannot be renormalized; use Edge::reflect");
+    if (cancels(whole.sum, whole.magnitude))
+        fail("Edge::renormalize: weights that sum to ", whole.sum, " cannot be renormalized; use Edge::reflect");
     for (const int y : example_y)
         for (const int x : example_x) {
-            const double inside = x < 0 || y < 0 ? whole : sum(x, y);
-            if (!(std::abs(inside) > least))
+            const WeightSum part =
+                x < 0 || y < 0 ? whole : inside(static_cast<std::size_t>(x), static_cast<std::size_t>(y));
+            if (cancels(part.sum, part.magnitude) || part.magnitude <= least_inside * whole.magnitude)
                 fail("Edge::renormalize: output (", x, ", ", y,
                      ") has no weight inside the image; use Edge::clamp or Edge::reflect");
-            scale_.push_back(static_cast<float>(whole / inside));
+            scale_.push_back(static_cast<float>(whole.sum / part.sum));
         }
 }
 
@@ -93,15 +112,11 @@ BorderScale::BorderScale(const WeightGrid& weights, int first_x, int first_y, in
     std::vector<int> example_x, example_y;
     kind_x_ = numbered(inside_x, {0, weights.width}, example_x);
     kind_y_ = numbered(inside_y, {0, weights.height}, example_y);
-    const std::vector<double> sums = area_sums(weights);
-    const auto corner = [&](int x, int y) {
-        return sums[static_cast<std::size_t>(y) * (static_cast<std::size_t>(weights.width) + 1) +
-                    static_cast<std::size_t>(x)];
-    };
-    fill(sums.back(), magnitude_of(weights.weights), example_x, example_y, [&](int x, int y) {
-        const auto [x0, x1] = inside_x[static_cast<std::size_t>(x)];
-        const auto [y0, y1] = inside_y[static_cast<std::size_t>(y)];
-        return corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0);
+    WeightGrid magnitudes = weights;
+    magnitudes.weights = magnitudes_of(weights.weights);
+    const AreaSums sums(weights), sizes(magnitudes);
+    fill({sums.whole(), sizes.whole()}, example_x, example_y, [&](std::size_t x, std::size_t y) {
+        return WeightSum{sums.of(inside_x[x], inside_y[y]), sizes.of(inside_x[x], inside_y[y])};
     });
 }
 
@@ -113,45 +128,46 @@ BorderScale::BorderScale(const Terms& terms, int first_x, int first_y, int width
     std::vector<int> example_x, example_y;
     kind_x_ = numbered(inside_x, {0, size.width}, example_x);
     kind_y_ = numbered(inside_y, {0, size.height}, example_y);
-    std::vector<std::vector<double>> sums_x, sums_y;
-    double whole = 0, magnitude = 0;
-    for (const Term& term : terms) {
-        sums_x.push_back(sums_from_first(term.row));
-        sums_y.push_back(sums_from_first(term.column));
-        whole += sums_x.back().back() * sums_y.back().back();
-        magnitude += magnitude_of(term.row) * magnitude_of(term.column);
-    }
-    const auto sum_of = [](const std::vector<double>& sums, std::pair<int, int> part) {
-        return sums[static_cast<std::size_t>(part.second)] - sums[static_cast<std::size_t>(part.first)];
+    struct Sums {
+        std::vector<double> x, y, size_x, size_y;
     };
-    fill(whole, magnitude, example_x, example_y, [&](int x, int y) {
-        double sum = 0;
-        for (std::size_t t = 0; t < terms.size(); ++t)
-            sum += sum_of(sums_x[t], inside_x[static_cast<std::size_t>(x)]) *
-                   sum_of(sums_y[t], inside_y[static_cast<std::size_t>(y)]);
-        return sum;
-    });
+    std::vector<Sums> sums;
+    for (const Term& term : terms)
+        sums.push_back({sums_from_first(term.row), sums_from_first(term.column),
+                        sums_from_first(magnitudes_of(term.row)), sums_from_first(magnitudes_of(term.column))});
+    const auto within = [&](std::pair<int, int> x, std::pair<int, int> y) {
+        WeightSum all;
+        for (const Sums& s : sums) {
+            all.sum += sum_of(s.x, x) * sum_of(s.y, y);
+            all.magnitude += sum_of(s.size_x, x) * sum_of(s.size_y, y);
+        }
+        return all;
+    };
+    fill(within({0, size.width}, {0, size.height}), example_x, example_y,
+         [&](std::size_t x, std::size_t y) { return within(inside_x[x], inside_y[y]); });
 }
 
 BorderScale::BorderScale(std::span<const std::pair<double, double>> whole,
                          const std::vector<std::vector<double>>& inside_x,
                          const std::vector<std::vector<double>>& inside_y) {
     std::vector<double> whole_x, whole_y;
-    double sum = 0, magnitude = 0;
     for (const auto& [x, y] : whole) {
         whole_x.push_back(x);
         whole_y.push_back(y);
-        sum += x * y;
-        magnitude += std::abs(x * y);
     }
     std::vector<int> example_x, example_y;
     kind_x_ = numbered(inside_x, whole_x, example_x);
     kind_y_ = numbered(inside_y, whole_y, example_y);
-    fill(sum, magnitude, example_x, example_y, [&](int x, int y) {
-        const std::vector<double>&of_x = inside_x[static_cast<std::size_t>(x)],
-              &of_y = inside_y[static_cast<std::size_t>(y)];
-        return std::inner_product(of_x.begin(), of_x.end(), of_y.begin(), 0.0);
-    });
+    const auto products = [](const std::vector<double>& x, const std::vector<double>& y) {
+        WeightSum all;
+        for (std::size_t t = 0; t < x.size(); ++t) {
+            all.sum += x[t] * y[t];
+            all.magnitude += std::abs(x[t] * y[t]);
+        }
+        return all;
+    };
+    fill(products(whole_x, whole_y), example_x, example_y,
+         [&](std::size_t x, std::size_t y) { return products(inside_x[x], inside_y[y]); });
 }
 
 void BorderScale::apply(std::span<float> row, int first_x, int y, int channels) const {

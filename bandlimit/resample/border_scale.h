@@ -1,4 +1,5 @@
 // What Edge::renormalize does to filters of two dimensions.
+// Stability: inner.
 #pragma once
 #include <span>
 #include <utility>
@@ -8,6 +9,11 @@
 #include "bandlimit/kernel/terms.h"
 
 namespace bandlimit {
+
+/// A sum of weights, and of their magnitudes.
+struct WeightSum {
+    double sum = 0, magnitude = 0;
+};
 
 /// By how much each output is scaled so that what was dropped outside does not darken it: the sum of all weights over
 /// the sum of those inside. Outputs that see the border in the same way share one number.
@@ -19,7 +25,7 @@ public:
     /// Of `weights`, the first of which multiplies the sample at (x + first_x, y + first_y), on width x height samples.
     /// Where an edge is not renormalize, nothing is dropped beyond it.
     /// cost    a number per kind of output: at most those of the weights
-    /// throws  Error for weights that sum to 0, and where those inside do, in either case to 1e-6 of their magnitudes
+    /// throws  Error where all weights, or those inside, cancels() in kernel/taps.h, and where next to none are inside
     BorderScale(const WeightGrid& weights, int first_x, int first_y, int width, int height, Edge edge_x, Edge edge_y);
 
     /// The same of a sum of products, in memory for their columns and rows, not for the weights that they stand for.
@@ -35,10 +41,10 @@ public:
     void apply(std::span<float> row, int first_x, int y, int channels) const;
 
 private:
-    /// Calls sum(a, b) for an output of every kind along x and y each, and fills the table of scales.
-    template <class Sum>
-    void fill(double whole, double magnitude, const std::vector<int>& example_x, const std::vector<int>& example_y,
-              Sum sum);
+    /// Calls inside(a, b) for an output of every kind along x and y each, and fills the table of scales.
+    template <class Inside>
+    void fill(const WeightSum& whole, const std::vector<int>& example_x, const std::vector<int>& example_y,
+              Inside inside);
 
     std::vector<int> kind_x_, kind_y_;  ///< of each output; 0: nothing is dropped. Empty: nothing is anywhere
     int kinds_x_ = 0;

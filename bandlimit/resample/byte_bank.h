@@ -1,4 +1,5 @@
 // Weights as integers, for codes of 8 bits.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 #include <vector>

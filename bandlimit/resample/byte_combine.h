@@ -1,4 +1,5 @@
 // The loops of vectors that resample 8-bit codes. What they compute is defined by resize_bytes_scalar() in byte_bank.h.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <cstdint>

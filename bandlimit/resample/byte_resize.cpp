@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bandlimit/core/allocator.h"
+#include "bandlimit/resample/caches.h"
 #include "bandlimit/resample/lines.h"
 #include "bandlimit/resample/sliding.h"
 #include "bandlimit/resample/transpose.h"
@@ -15,9 +16,6 @@ namespace {
 
 template <class T>
 using Samples = std::vector<T, SampleAllocator<T>>;
-
-constexpr std::size_t first_cache = 32 << 10;  // for a part of the rows and of the tile
-constexpr double second_cache = 768 << 10;     // for the rows of a strip
 
 /// Whether the samples of channels [c, c + count) lie as the loops take them.
 template <class T>
@@ -77,7 +75,8 @@ private:
 class ByteRun {
 public:
     ByteRun(const ByteLoops& loops, const BytePlan& plan, View<const std::uint8_t> src, int first_source,
-            View<std::uint8_t> dst, int first_target, int c, int count, Pixel pixel, const ByteStrip& strip)
+            View<std::uint8_t> dst, int first_target, int c, int count, Pixel pixel, const ByteStrip& strip,
+            RunMonitor& monitor)
         : loops_(loops),
           plan_(plan),
           strip_(strip),
@@ -91,6 +90,7 @@ public:
           pixel_(pixel),
           lanes_(static_cast<std::size_t>(pixel)),
           block_(tile_rows(pixel)),
+          monitor_(monitor),
           reader_(loops, cropped(src, strip.stored.begin, 0, strip.stored.end - strip.stored.begin, src.height), c,
                   count, pixel),
           padded_(whole_columns(reader_.bytes())),
@@ -114,6 +114,7 @@ public:
             filter_y(first, last);
             for (int r = 0; r < last - first; ++r) fill_margins(r);
             filter_x(first, last);
+            monitor_.made(std::int64_t{last - first} * (strip_.last - strip_.first) * count_);
         }
     }
 
@@ -155,8 +156,9 @@ private:
         // Output rows that lie together read mostly the same groups: a strip of those stays in the first cache.
         const std::size_t tile_bytes_per_column_byte = tile_pair / 4;
         const std::size_t strip =
-            std::max<std::size_t>(first_cache / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) * 2 *
-            byte_column;
+            std::max<std::size_t>(
+                std::size_t{first_cache_bytes} / (4 * most + tile_bytes_per_column_byte) / (2 * byte_column), 1) *
+            2 * byte_column;
         for (std::size_t k = 0; k < padded_; k += strip)
             for (int r = 0; r < last - first; ++r) {
                 const ByteColumnTaps& taps = taps_[static_cast<std::size_t>(r)];
@@ -237,6 +239,7 @@ private:
     Pixel pixel_;
     std::size_t lanes_;
     int block_;  ///< output rows computed together
+    RunMonitor& monitor_;
     SourceReader reader_;
     std::size_t padded_;
     IndexRange rows_read_;
@@ -272,7 +275,7 @@ std::vector<ByteStrip> make_strips(const ByteBanks& banks, Pixel pixel) {
     for (const Bank::Row& row : y.rows) most_rows = std::max(most_rows, row.count);
     for (const Bank::Row& row : x.rows) most_columns = std::max(most_columns, row.count);
     const double rows = tile_rows(pixel) * ratio(y) + most_rows + 3;
-    const double columns = std::max(second_cache / (rows * static_cast<int>(pixel)), 16.0 * most_columns);
+    const double columns = std::max(byte_strip_bytes / (rows * static_cast<int>(pixel)), 16.0 * most_columns);
     // Pixels beyond one border are those of the other under wrap: they must be in the same strip.
     const int outputs = x.edge == Edge::wrap || columns >= x.inputs
                             ? x.output_count()
@@ -290,10 +293,11 @@ std::vector<ByteStrip> make_strips(const ByteBanks& banks, Pixel pixel) {
 
 /// The same for means of 2 x 2 pixels, which need no rows in between.
 void halve_rows(const ByteLoops& loops, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
-                int first_target, int c, Pixel pixel, int begin, int end) {
+                int first_target, int c, Pixel pixel, int begin, int end, RunMonitor& monitor) {
     for (int i = begin; i < end; ++i) {
         const std::uint8_t* const rows[] = {&src(0, 2 * i - first_source, c), &src(0, 2 * i + 1 - first_source, c)};
         loops.halve_bytes(rows, static_cast<std::size_t>(dst.width), pixel, &dst(0, i - first_target, c));
+        monitor.made(std::int64_t{dst.width} * static_cast<int>(pixel));
     }
 }
 
@@ -310,7 +314,7 @@ BytePlan make_byte_plan(const ByteBanks& banks) {
 }
 
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
-                  int first_target, int begin, int end) {
+                  int first_target, int begin, int end, RunMonitor& monitor) {
     const ByteLoops* const loops = byte_loops();
     if (!loops)
         return resize_bytes_scalar(plan.banks, src, first_source,
@@ -322,11 +326,12 @@ void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_
         const int count = std::min(step, src.channels - c);
         const Pixel pixel = count == 1 ? Pixel::one : Pixel::four;
         if (plan.is_half_box && is_in_place(src, count, pixel) && is_in_place(dst, count, pixel)) {
-            halve_rows(*loops, src, first_source, dst, first_target, c, pixel, begin, end);
+            halve_rows(*loops, src, first_source, dst, first_target, c, pixel, begin, end, monitor);
             continue;
         }
         for (const ByteStrip& strip : pixel == Pixel::one ? plan.strips_of_one : plan.strips_of_four)
-            ByteRun(*loops, plan, src, first_source, dst, first_target, c, count, pixel, strip).rows(begin, end);
+            ByteRun(*loops, plan, src, first_source, dst, first_target, c, count, pixel, strip, monitor)
+                .rows(begin, end);
     }
 }
 

@@ -1,12 +1,13 @@
 // Resampling of 8-bit codes in integers.
+// Stability: inner.
 #pragma once
 #include <vector>
 
-#include "bandlimit/core/parallel.h"
 #include "bandlimit/core/view.h"
 #include "bandlimit/resample/byte_bank.h"
 #include "bandlimit/resample/byte_combine.h"
 #include "bandlimit/resample/lines.h"
+#include "bandlimit/resample/row_filter.h"
 
 namespace bandlimit {
 
@@ -29,7 +30,7 @@ struct BytePlan {
 BytePlan make_byte_plan(const ByteBanks& banks);
 
 /// Computes rows [begin, end) of the output, which must all fit integers, in one thread: the codes of
-/// resize_bytes_scalar(). Columns that do not fit are left as they are.
+/// resize_bytes_scalar(). Columns that do not fit are left as they are. The monitor hears of what is made.
 ///
 /// shapes   src holds the stored rows from first_source on that the outputs read, dst the output rows from first_target
 ///          on; any strides, any number of channels
@@ -38,6 +39,6 @@ BytePlan make_byte_plan(const ByteBanks& banks);
 /// cost     to half by 12 taps about 1.8 times that of reading and writing memory for four channels side by side;
 ///          2 and 3 run as 4
 void resize_bytes(const BytePlan& plan, View<const std::uint8_t> src, int first_source, View<std::uint8_t> dst,
-                  int first_target, int begin, int end);
+                  int first_target, int begin, int end, RunMonitor& monitor);
 
 }  // namespace bandlimit

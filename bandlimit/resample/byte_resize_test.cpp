@@ -79,12 +79,13 @@ TEST(ResizeBytes, GivesTheCodesOfItsDefinitionOnEveryTarget) {
         const BytePlan plan = make_byte_plan(banks);
         for_each_target([&](Target) {
             const int cut = random.integer(0, new_height);
+            RunMonitor nobody;
             const View<std::uint8_t> to = turned(found.view(), run / 4);
-            if (cut > 0) resize_bytes(plan, from, 0, to, 0, 0, cut);
+            if (cut > 0) resize_bytes(plan, from, 0, to, 0, 0, cut, nobody);
             if (cut < new_height) {  // with the rows alone that it needs
                 const IndexRange rows = stored_indices(indices_read(y, cut, new_height), height, edge);
                 resize_bytes(plan, cropped(from, 0, rows.begin, width, rows.end - rows.begin), rows.begin,
-                             cropped(to, 0, cut, new_width, new_height - cut), cut, cut, new_height);
+                             cropped(to, 0, cut, new_width, new_height - cut), cut, cut, new_height, nobody);
             }
             ASSERT_EQ(difference(to, expected.view()), "")
                 << kernel.name << ' ' << name_of(edge) << ' ' << width << 'x' << height << 'x' << channels << " to "
@@ -106,7 +107,8 @@ TEST(ResizeBytes, WideImagesAreThoseOfTheirDefinition) {
             const Image<std::uint8_t> src = noise(random, width, height, channels, Layout::interleaved);
             Image<std::uint8_t> expected(new_width, 9, channels), found(new_width, 9, channels, Layout::interleaved);
             resize_bytes_scalar(banks, src.view(), 0, expected.view(), 0);
-            resize_bytes(plan, src.view(), 0, found.view(), 0, 0, 9);
+            RunMonitor nobody;
+            resize_bytes(plan, src.view(), 0, found.view(), 0, 0, 9, nobody);
             ASSERT_EQ(difference(found.view(), expected.view()), "") << name_of(edge) << ' ' << channels;
         }
 }

@@ -1,4 +1,5 @@
 // The one inner loop: weighted sums of lines of samples.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 

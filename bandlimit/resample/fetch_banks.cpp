@@ -6,74 +6,41 @@
 #include <numeric>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/resample/bank_builder.h"
 #include "bandlimit/resample/mapping.h"
 
 namespace bandlimit {
 namespace {
 
-bool cuts(Edge edge) { return edge == Edge::zero || edge == Edge::renormalize; }
-
 double sum_of(std::span<const LinearRead> reads) {
     return std::accumulate(reads.begin(), reads.end(), 0.0, [](double s, const LinearRead& r) { return s + r.weight; });
 }
 
-/// The weights of an output, from source sample `first` on.
-struct Weights {
-    int first = 0;
-    std::vector<double> weights;
-};
-
 /// What the reads come to for an output that lies `fraction` right of a sample.
-Weights weights_of(std::span<const LinearRead> reads, double fraction, double stretch) {
+PhaseRow row_of(std::span<const LinearRead> reads, double fraction, double stretch) {
     std::map<int, double> found;
     for (const LinearRead& read : reads) {
         const double at = fraction + read.offset * stretch, whole = std::floor(at);
         found[static_cast<int>(whole)] += read.weight * (1 - (at - whole));
         if (at > whole) found[static_cast<int>(whole) + 1] += read.weight * (at - whole);
     }
-    Weights result{found.begin()->first, {}};
+    const int first = found.begin()->first;
+    PhaseRow row{first, {}, first, first};
     for (const auto& [i, w] : found) {
-        result.weights.resize(static_cast<std::size_t>(i - result.first + 1));
-        result.weights.back() = w;
+        row.weights.resize(static_cast<std::size_t>(i - first + 1));
+        row.weights.back() = w;
     }
-    return result;
-}
-
-/// Drops what lies outside `inputs` samples; at least one weight stays, if of 0.
-Weights cut(const Weights& row, int inputs) {
-    const int end = row.first + static_cast<int>(row.weights.size());
-    const int from = std::clamp(row.first, 0, inputs), to = std::clamp(end, 0, inputs);
-    if (from >= to) return {0, {0}};
-    return {from, {row.weights.begin() + (from - row.first), row.weights.begin() + (to - row.first)}};
+    return row;
 }
 
 Bank bank_of_reads(std::span<const LinearRead> reads, const Axis& src, const Axis& dst, Edge edge) {
     const Mapping mapping(src, dst);
-    Bank bank;
-    bank.inputs = src.count;
-    bank.edge = edge;
-    std::map<std::int64_t, int> row_of_phase;
-    const auto append = [&](const Weights& row) {
-        bank.rows.push_back({bank.weights.size(), static_cast<int>(row.weights.size()), 0, 1});
-        for (const double w : row.weights) bank.weights.push_back(static_cast<float>(w));
-        return static_cast<int>(bank.rows.size()) - 1;
-    };
+    BankBuilder builder(src.count, dst.count, edge, CutRows::unfinished);
     for (int i = 0; i < dst.count; ++i) {
         const Position at = mapping(i);
-        Weights row = weights_of(reads, at.fraction, std::abs(mapping.step()) / 2);
-        row.first += static_cast<int>(at.whole);
-        const bool reaches_out = row.first < 0 || row.first + static_cast<int>(row.weights.size()) > src.count;
-        if (cuts(edge) && reaches_out) {
-            const Weights inside = cut(row, src.count);
-            bank.outputs.push_back({inside.first, append(inside)});
-            continue;
-        }
-        const auto known = row_of_phase.find(at.phase);
-        const int index = known == row_of_phase.end() ? append(row) : known->second;
-        row_of_phase[at.phase] = index;
-        bank.outputs.push_back({row.first, index});
+        builder.add(at, row_of(reads, at.fraction, std::abs(mapping.step()) / 2));
     }
-    return bank;
+    return builder.take();
 }
 
 }  // namespace

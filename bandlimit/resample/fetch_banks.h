@@ -1,4 +1,5 @@
 // Lists of bilinear reads as sums of separable banks.
+// Stability: inner.
 #pragma once
 #include <vector>
 

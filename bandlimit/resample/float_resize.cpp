@@ -1,56 +1,44 @@
 #include "bandlimit/resample/float_resize.h"
 
 #include <algorithm>
-#include <optional>
 #include <variant>
 
+#include "bandlimit/resample/caches.h"
 #include "bandlimit/resample/combine.h"
 #include "bandlimit/resample/row_loader.h"
+#include "bandlimit/resample/row_store.h"
 #include "bandlimit/resample/rows.h"
 #include "bandlimit/resample/sliding.h"
 
 namespace bandlimit {
 namespace {
 
-constexpr double strip_bytes = 1 << 20;  // of rows between source and output: half of a second cache of these days
-
 /// Computes the output columns of one strip in one thread; for radial kernels, of all.
 class FloatRun {
 public:
-    FloatRun(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, const Strip& strip)
+    FloatRun(const ResizePlan& plan, const RowRun& run, const Strip& strip)
         : plan_(plan),
-          source_(source),
-          target_(target),
+          run_(run),
+          source_(run.sources[0]),
           strip_(strip),
           channels_(static_cast<std::size_t>(plan.channels)),
-          width_(strip.read.end - strip.read.begin),
+          width_(strip.read.count()),
           outputs_(strip.outputs()),
-          loader_(source, strip.read, plan.src.y.count, plan.options.edge, plan.edge_y(), plan.options.premultiply),
-          targets_(columns_of(target.samples, strip.first(), outputs_)),
+          loader_(source_, strip.read, plan.src.y.count, plan.options.edge, plan.edge_y(), plan.options.premultiply),
+          store_(run, strip.first(), outputs_, plan.options.premultiply),
           block_(rows_of_block(plan.channels)),
           out_(block_, length(outputs_)) {
         if (plan.x_first) decoded_ = Rows(block_, length(width_));
         else if (!plan.radial) middle_ = Rows(block_, length(width_));
     }
 
-    /// Rows [begin, end) of the target; returns whether something not finite was lost.
-    bool rows(int begin, int end) {
+    /// Makes `rows` of the target; returns whether something not finite was lost.
+    bool make(IndexRange rows) {
         bool lost = false;
-        for (int first = begin; first < end; first += block_) {
-            const int last = std::min(first + block_, end);
-            gather_lines(plan_.rows_read(first, last));
-            if (plan_.radial) filter_radial(first, last);
-            else if (plan_.x_first) filter_y(first, last, out_, outputs_);
-            else {
-                filter_y(first, last, middle_, width_);
-                const View<const float> middle = middle_.view(0, last - first, width_, plan_.channels);
-                if (const std::optional<View<float>> target = direct_target(first, last)) {
-                    filter_x(middle, *target);
-                    continue;
-                }
-                filter_x(middle, out_.view(0, last - first, outputs_, plan_.channels));
-            }
-            for (int i = first; i < last; ++i) lost |= store(i - first, i);
+        for (int first = rows.begin; first < rows.end; first += block_) {
+            const int last = std::min(first + block_, rows.end);
+            lost |= make_block(first, last);
+            run_.monitor.made(static_cast<std::int64_t>(last - first) * outputs_ * plan_.channels);
         }
         return lost;
     }
@@ -58,7 +46,22 @@ public:
 private:
     std::size_t length(int width) const { return static_cast<std::size_t>(width) * channels_; }
     float antiring() const { return static_cast<float>(plan_.options.antiring); }
-    bool premultiplied() const { return plan_.options.premultiply || source_.encoding.associated; }
+
+    bool make_block(int first, int last) {
+        gather_lines(plan_.rows_read(first, last));
+        if (plan_.radial) filter_radial(first, last);
+        else if (plan_.x_first) filter_y(first, last, out_, outputs_);
+        else {
+            filter_y(first, last, middle_, width_);
+            const View<const float> middle = middle_.view(0, last - first, width_, plan_.channels);
+            const View<float> target = store_.direct(first, last);
+            filter_x(middle, target.data ? target : out_.view(0, last - first, outputs_, plan_.channels));
+            if (target.data) return false;
+        }
+        bool lost = false;
+        for (int i = first; i < last; ++i) lost |= store_.store({out_[i - first], length(outputs_)}, i);
+        return lost;
+    }
 
     /// Lets lines_ point to the rows `read`, which are made unless they are there.
     void gather_lines(IndexRange read) {
@@ -96,16 +99,6 @@ private:
         apply_by_tiles(plan_.x, strip_.runs, from, strip_.read.begin, to, strip_.first(), antiring());
     }
 
-    /// Target rows [first, last), where they are floats to be stored as they come out.
-    std::optional<View<float>> direct_target(int first, int last) const {
-        const auto* floats = std::get_if<View<float>>(&targets_);
-        const Encoding& to = target_.encoding;
-        if (!floats || to.transfer != Transfer::linear || !target_.background.empty() ||
-            (to.alpha >= 0 && premultiplied() != to.associated))
-            return {};
-        return cropped(*floats, 0, first - target_.first_row, floats->width, last - first);
-    }
-
     void filter_radial(int first, int last) {
         for (int i = first; i < last; ++i)
             plan_.radial->row(i, lines_at_zero(), plan_.channels, antiring(), out_[i - first]);
@@ -125,29 +118,19 @@ private:
         }
     }
 
-    bool store(int from, int i) {
-        const std::span<const float> row{out_[from], length(outputs_)};
-        const int y = i - target_.first_row;
-        if (target_.background.empty()) return encode_row(row, premultiplied(), targets_, y, target_.encoding);
-        opaque_.resize(static_cast<std::size_t>(outputs_) * (channels_ - 1));
-        composite_row(row, premultiplied(), plan_.channels, source_.encoding.alpha, target_.background, opaque_);
-        return encode_row(opaque_, false, targets_, y, target_.encoding);
-    }
-
     const ResizePlan& plan_;
+    const RowRun& run_;
     const SourceRows& source_;
-    const TargetRows& target_;
     const Strip& strip_;
     std::size_t channels_;
     int width_, outputs_;
     RowLoader loader_;
-    AnyView targets_;
+    RowStore store_;
     int block_;  ///< output rows computed together
     SlidingWindow window_;
     Rows held_, decoded_, middle_, out_;
     std::vector<const float*> lines_;
     int begin_ = 0;  ///< the row of lines_[0]
-    std::vector<float> opaque_;
 };
 
 }  // namespace
@@ -175,14 +158,13 @@ void add_strips(const ResizePlan& plan, int first, int last, std::vector<Strip>&
     }
 }
 
-bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const SourceRows& source,
-                   const TargetRows& target, int begin, int end) {
+bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const RowRun& run, IndexRange rows) {
     if (plan.radial) {
         const Strip all{{{0, plan.dst.x.count, {}}}, {0, plan.src.x.count}};
-        return FloatRun(plan, source, target, all).rows(begin, end);
+        return FloatRun(plan, run, all).make(rows);
     }
     bool lost = false;
-    for (const Strip& strip : strips) lost |= FloatRun(plan, source, target, strip).rows(begin, end);
+    for (const Strip& strip : strips) lost |= FloatRun(plan, run, strip).make(rows);
     return lost;
 }
 

@@ -1,4 +1,5 @@
 // Resampling by way of floats: every depth, encoding and kernel.
+// Stability: inner.
 #pragma once
 #include "bandlimit/resample/plan.h"
 
@@ -16,10 +17,9 @@ double strip_columns(double rows, int channels, double taps);
 void add_strips(const ResizePlan& plan, int first, int last, std::vector<Strip>& strips);
 
 /// Computes rows [begin, end) of the output in one thread, of these of the plan's strips; a radial kernel has none, and
-/// computes all columns. See Resizer::run.
+/// computes all columns. See Resizer.
 ///
 /// memory   the source rows that a block of output rows reads, and one more block, of one strip: about 1 MiB
-bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const SourceRows& source,
-                   const TargetRows& target, int begin, int end);
+bool resize_floats(const ResizePlan& plan, const std::vector<Strip>& strips, const RowRun& run, IndexRange rows);
 
 }  // namespace bandlimit

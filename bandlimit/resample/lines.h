@@ -1,4 +1,5 @@
 // Pointers to lines by the indices that a bank reads.
+// Stability: inner.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -8,14 +9,8 @@
 
 namespace bandlimit {
 
-/// The indices [begin, end) that outputs [first, last) of `bank` read; begin may be negative, end beyond the inputs.
-struct IndexRange {
-    int begin = 0, end = 0;
-};
+/// The indices that outputs [first, last) of `bank` read.
 IndexRange indices_read(const Bank& bank, int first, int last);
-
-/// The smallest range of the `count` stored indices that holds all that `read` leads to.
-IndexRange stored_indices(IndexRange read, int count, Edge edge);
 
 /// A table of line pointers that may be indexed by any index in a range: edges cost one entry each, and no branch in
 /// the inner loop.

@@ -1,4 +1,5 @@
 // Where the samples of one axis lie among those of another.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 

@@ -1,9 +1,10 @@
 // What a Resizer has worked out before it runs.
+// Stability: inner.
 #pragma once
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "bandlimit/resample/bank.h"
 #include "bandlimit/resample/byte_resize.h"
 #include "bandlimit/resample/radial.h"
 #include "bandlimit/resample/resize.h"
@@ -25,7 +26,6 @@ struct ResizePlan {
     Grid src, dst;
     int channels;
     ResizeOptions options;
-    std::string kernel_x, kernel_y;
     Bank x, y;                         ///< of separable kernels
     std::optional<RadialBank> radial;  ///< instead of both
     bool x_first = false;

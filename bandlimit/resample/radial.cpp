@@ -5,16 +5,12 @@
 #include <map>
 
 #include "bandlimit/core/error.h"
+#include "bandlimit/kernel/taps.h"
 
 namespace bandlimit {
 namespace {
 
 constexpr double table_density = 4096;  // entries per unit: linear interpolation errs by f'' / (8 * 4096^2) < 1e-7
-
-void check_radial(const char* function, const Kernel& kernel) {
-    if (!is_radial(kernel))
-        fail(function, ": ", kernel.name, " is separable; use make_bank, or a radial kernel such as jinc3");
-}
 
 /// The integers within `radius` of `center`.
 struct Span {
@@ -25,20 +21,6 @@ struct Span {
 };
 
 }  // namespace
-
-RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double phase_y) {
-    check_radial("radial_weights_at", kernel);
-    const Span x(phase_x, kernel.radius), y(phase_y, kernel.radius);
-    RadialWeights result{x.first, y.first, x.count(), y.count(), {}, 0};
-    for (int j = y.first; j <= y.last; ++j)
-        for (int i = x.first; i <= x.last; ++i) {
-            result.weights.push_back(kernel.value(std::hypot(i - phase_x, j - phase_y)));
-            result.sum += result.weights.back();
-        }
-    if (!(std::abs(result.sum) > 1e-9)) fail("radial_weights_at: the weights of ", kernel.name, " sum to ", result.sum);
-    for (double& w : result.weights) w /= result.sum;
-    return result;
-}
 
 /// Weights around one output, relative to the source samples at its whole position.
 struct RadialBank::Disc {
@@ -57,7 +39,8 @@ RadialBank::RadialBank(const Kernel& kernel, const Axis& src_x, const Axis& dst_
       edge_x_(edge_x),
       edge_y_(edge_y),
       radius_(kernel.radius) {
-    check_radial("RadialBank", kernel);
+    if (!is_radial(kernel))
+        fail("RadialBank: ", kernel.name, " is separable; use make_bank, or a radial kernel such as jinc3");
     // The last entry lies at the radius, where a kernel may jump to 0, and holds what it jumps from.
     const double intervals = std::ceil(radius_ * table_density);
     density_ = intervals / radius_;
@@ -115,6 +98,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
         const Disc& disc = found->second;
         std::fill(sums.begin(), sums.end(), 0.0f);
         float read = 0;  // sum of the weights that are not dropped, rounded as the sum of ones is
+        double magnitude = 0;
         bool has_near = false;
         const float* weight = disc.weights.data();
         for (int j = disc.y.first; j <= disc.y.last; ++j) {
@@ -128,6 +112,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
                     (source < 0 && edge_x_ == Edge::renormalize) || (!line && edge_y_ == Edge::renormalize);
                 if (*weight == 0 || is_dropped) continue;
                 read += *weight;
+                magnitude += std::abs(*weight);
                 if (source < 0 || !line) continue;
                 const bool is_near = near_row && k >= disc.near_x.first && k <= disc.near_x.last;
                 for (int c = 0; c < channels; ++c) {
@@ -143,7 +128,7 @@ void RadialBank::row(int y, ConstLines rows, int channels, float antiring, float
         }
         const bool rescales = edge_x_ == Edge::renormalize || edge_y_ == Edge::renormalize;
         const auto divisor = static_cast<double>(rescales ? read : disc.sum);
-        if (!(std::abs(divisor) > 1e-9))
+        if (cancels(divisor, magnitude))
             fail("RadialBank: output (", i, ", ", y,
                  ") has no weight inside the source; use Edge::clamp, or axes that overlap");
         for (std::size_t c = 0; c < sums.size(); ++c) {

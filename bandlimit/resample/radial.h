@@ -1,6 +1,6 @@
 // Kernels of the distance: weighted sums over discs of samples.
+// Stability: inner.
 #pragma once
-#include <cstddef>
 #include <vector>
 
 #include "bandlimit/core/axis.h"
@@ -12,17 +12,6 @@
 
 namespace bandlimit {
 
-/// Weights of a radial kernel on the grid of the source: sample (first_x + i, first_y + j) has weights[j * width + i].
-struct RadialWeights {
-    int first_x = 0, first_y = 0, width = 0, height = 0;
-    std::vector<double> weights;  ///< sum 1
-    double sum = 1;               ///< their sum before that
-};
-
-/// What an output reads that lies (phase_x, phase_y) to the right of and below sample (0, 0), at equal pitches.
-/// Throws Error for a kernel that is not radial, or where the weights sum to 0.
-RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double phase_y);
-
 /// Resamples by a radial kernel, a row of outputs at a time, by a direct loop over the samples within the radius.
 ///
 /// The kernel is widened per axis to the pitch of the target where that is coarser (to an ellipse, if the axes differ).
@@ -33,8 +22,7 @@ RadialWeights radial_weights_at(const Kernel& kernel, double phase_x, double pha
 /// error   of the table: below 1e-7 of the peak; sums are fused multiply-adds in float, row by row: the same bits for
 ///         any number of threads and any part of the target
 /// cost    about 4 radius^2 multiply-adds per sample and channel (radius after widening), and as many table look-ups
-/// per
-///         pair of distinct phases; no vector instructions
+///         per pair of distinct phases; no vector instructions
 /// throws  Error for a separable kernel, and as Mapping
 class RadialBank {
 public:

@@ -1,4 +1,5 @@
 #include "bandlimit/resample/radial.h"
+#include "bandlimit/kernel/radial_weights.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
 #include "bandlimit/resample/resize.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/resample/float_resize.h"
@@ -46,17 +45,66 @@ void plan_bytes(ResizePlan& plan) {
     });
 }
 
-/// Computes output rows [begin, end): what fits them in integers, the rest in floats. Returns whether a value that is
-/// not finite was lost.
-bool resize_codes(const ResizePlan& plan, const SourceRows& source, const TargetRows& target, int begin, int end) {
-    const auto from = std::get<View<const std::uint8_t>>(source.samples);
-    const auto to = std::get<View<std::uint8_t>>(target.samples);
+/// Makes rows of the output: what fits them in integers, the rest in floats. Returns whether a value that is not finite
+/// was lost.
+bool resize_codes(const ResizePlan& plan, const RowRun& run, IndexRange rows) {
+    const auto from = std::get<View<const std::uint8_t>>(run.sources[0].samples);
+    const auto to = std::get<View<std::uint8_t>>(run.target.samples);
     bool lost = false;
-    for_each_run(plan.bytes->banks.y, begin, end, [&](int first, int last, bool fits) {
-        if (fits) resize_bytes(*plan.bytes, from, source.first_row, to, target.first_row, first, last);
-        lost |= resize_floats(plan, fits ? plan.strips_past_bytes : plan.strips, source, target, first, last);
+    for_each_run(plan.bytes->banks.y, rows.begin, rows.end, [&](int first, int last, bool fits) {
+        if (fits)
+            resize_bytes(*plan.bytes, from, run.sources[0].first_row, to, run.target.first_row, first, last,
+                         run.monitor);
+        lost |= resize_floats(plan, fits ? plan.strips_past_bytes : plan.strips, run, {first, last});
     });
     return lost;
+}
+
+RowWork start(const ResizePlan& plan, const RowRun& run) {
+    const bool are_codes = std::holds_alternative<View<const std::uint8_t>>(run.sources[0].samples) &&
+                           std::holds_alternative<View<std::uint8_t>>(run.target.samples);
+    const bool in_integers = plan.bytes && are_codes && plan.is_plain(run.sources[0].encoding, run.target);
+    const RowParts parts(run.rows(), smallest_run, run.parallel.count());
+    return {parts.count(), [&plan, &run, parts, in_integers](int i) {
+                return in_integers ? resize_codes(plan, run, parts[i])
+                                   : resize_floats(plan, plan.strips, run, parts[i]);
+            }};
+}
+
+RowProtocol protocol_of(std::shared_ptr<const ResizePlan> plan) {
+    return {.name = "Resizer",
+            .sources = {{plan->src.x.count, plan->src.y.count, plan->edge_y()}},
+            .width = plan->dst.x.count,
+            .height = plan->dst.y.count,
+            .channels = plan->channels,
+            .rows_read = [plan](std::size_t, int first, int last) { return plan->rows_read(first, last); },
+            .bytes =
+                [plan](int channels, const Parallel& parallel) {
+                    return double(Resizer::bytes(plan->src, plan->dst, channels, plan->options, parallel));
+                },
+            .start = [plan](const RowRun& run) { return start(*plan, run); }};
+}
+
+std::shared_ptr<const ResizePlan> make_plan(const Grid& src, const Grid& dst, int channels,
+                                            const ResizeOptions& options, std::string& kernel_x,
+                                            std::string& kernel_y) {
+    if (channels < 1) fail("Resizer: channels = ", channels, "; pass 1 or more");
+    if (!(options.antiring >= 0 && options.antiring <= 1))
+        fail("Resizer: antiring = ", options.antiring, "; pass 0 (off) to 1 (no overshoot)");
+    auto plan = std::make_shared<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, false, {}, {}, {}});
+    const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
+    if (kernel && is_radial(*kernel)) {
+        plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge, plan->edge_y());
+        kernel_x = kernel_y = kernel->name;
+        return plan;
+    }
+    plan->x = bank_of(options.reconstruction, src.x, dst.x, options.edge, kernel_x);
+    plan->y = bank_of(options.reconstruction, src.y, dst.y, plan->edge_y(), kernel_y);
+    const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
+    plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
+    add_strips(*plan, 0, dst.x.count, plan->strips);
+    if (runs_bytes_in_integers) plan_bytes(*plan);
+    return plan;
 }
 
 }  // namespace
@@ -65,33 +113,11 @@ Kernel auto_kernel(const Axis& src, const Axis& dst) {
     return std::abs(Mapping(src, dst).step()) > 1 ? shrink3() : grow3();
 }
 
-Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options) {
-    if (channels < 1) fail("Resizer: channels = ", channels, "; pass 1 or more");
-    if (!(options.antiring >= 0 && options.antiring <= 1))
-        fail("Resizer: antiring = ", options.antiring, "; pass 0 (off) to 1 (no overshoot)");
-    auto plan =
-        std::make_unique<ResizePlan>(ResizePlan{src, dst, channels, options, {}, {}, {}, {}, {}, false, {}, {}, {}});
-    const Kernel* kernel = std::get_if<Kernel>(&options.reconstruction);
-    if (kernel && is_radial(*kernel)) {
-        plan->radial.emplace(*kernel, src.x, dst.x, src.y, dst.y, options.edge, plan->edge_y());
-        plan->kernel_x = plan->kernel_y = kernel->name;
-    } else {
-        plan->x = bank_of(options.reconstruction, src.x, dst.x, options.edge, plan->kernel_x);
-        plan->y = bank_of(options.reconstruction, src.y, dst.y, plan->edge_y(), plan->kernel_y);
-        const double step_x = Mapping(src.x, dst.x).step(), step_y = Mapping(src.y, dst.y).step();
-        plan->x_first = cost(step_x, step_y) < cost(step_y, step_x);
-        add_strips(*plan, 0, dst.x.count, plan->strips);
-        if (runs_bytes_in_integers) plan_bytes(*plan);
-    }
-    plan_ = std::move(plan);
-}
-
-Resizer::~Resizer() = default;
-Resizer::Resizer(Resizer&&) noexcept = default;
-Resizer& Resizer::operator=(Resizer&&) noexcept = default;
+Resizer::Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options)
+    : rows_(protocol_of(make_plan(src, dst, channels, options, kernel_x_, kernel_y_))) {}
 
 std::uint64_t Resizer::bytes(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options,
-                             Parallel parallel) {
+                             const Parallel& parallel) {
     const Mapping x(src.x, dst.x), y(src.y, dst.y);
     const double radius_x = radius_of(options.reconstruction, src.x, dst.x);
     const double radius_y = radius_of(options.reconstruction, src.y, dst.y);
@@ -111,55 +137,22 @@ std::uint64_t Resizer::bytes(const Grid& src, const Grid& dst, int channels, con
     return banks + static_cast<std::uint64_t>(runs * (window + blocks) * channels * sizeof(float));
 }
 
-const std::string& Resizer::kernel_x() const { return plan_->kernel_x; }
-const std::string& Resizer::kernel_y() const { return plan_->kernel_y; }
-
-IndexRange Resizer::rows_needed(int first, int last) const {
-    if (first < 0 || first >= last || last > plan_->dst.y.count)
-        fail("Resizer::rows_needed: rows ", first, " to ", last, " of ", plan_->dst.y.count, "; pass a part of them");
-    return stored_indices(plan_->rows_read(first, last), plan_->src.y.count, plan_->edge_y());
-}
-
-bool Resizer::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
-    const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
-    const int out_channels = plan_->channels - (target.background.empty() ? 0 : 1);
-    if (from.width != plan_->src.x.count || to.width != plan_->dst.x.count || from.channels != plan_->channels ||
-        to.channels != out_channels)
-        fail("Resizer::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
-             " with ", to.channels, "; need ", plan_->src.x.count, " with ", plan_->channels, " and ",
-             plan_->dst.x.count, " with ", out_channels);
-    check_encoding("Resizer::run", source.encoding, from.channels);
-    check_encoding("Resizer::run", target.encoding, to.channels);
-    check_apart("Resizer::run", source.samples, target.samples);
-    if (!target.background.empty() &&
-        (source.encoding.alpha < 0 || target.background.size() != static_cast<std::size_t>(out_channels)))
-        fail("Resizer::run: a background of ", target.background.size(), " channels; it needs an alpha channel and ",
-             out_channels, " values");
-    if (to.height == 0) return false;
-    const IndexRange needed = rows_needed(target.first_row, target.first_row + to.height);
-    if (needed.begin < source.first_row || needed.end > source.first_row + from.height)
-        fail("Resizer::run: source rows ", source.first_row, " to ", source.first_row + from.height, "; rows ",
-             needed.begin, " to ", needed.end, " are needed");
-    const bool are_codes = std::holds_alternative<View<const std::uint8_t>>(source.samples) &&
-                           std::holds_alternative<View<std::uint8_t>>(target.samples);
-    const bool in_integers = plan_->bytes && are_codes && plan_->is_plain(source.encoding, target);
-    std::atomic<bool> lost = false;
-    const int share = (to.height + parallel.count() - 1) / parallel.count();
-    parallel_for(to.height, std::max(share, smallest_run), parallel, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        const int first = target.first_row + static_cast<int>(begin), last = target.first_row + static_cast<int>(end);
-        if (in_integers ? resize_codes(*plan_, source, target, first, last)
-                        : resize_floats(*plan_, plan_->strips, source, target, first, last))
-            lost = true;
-    });
-    return lost;
-}
-
-Image<float> resample(View<const float> src, int width, int height, const ResizeOptions& options, Parallel parallel,
-                      Layout layout) {
+Image<float> resample(View<const float> src, int width, int height, const ResizeOptions& options,
+                      const Parallel& parallel, Layout layout) {
     Image<float> result(width, height, src.channels, layout);
     const Resizer resizer({{src.width}, {src.height}}, {{width}, {height}}, src.channels, options);
     resizer.run({src, 0, {}}, {result.view(), 0, {}, {}}, parallel);
     return result;
+}
+
+RunReport resize_srgb(const AnyConstView& src, const AnyView& dst, const ResizeOptions& options,
+                      const Parallel& parallel) {
+    const ViewShape from = shape_of(src), to = shape_of(dst);
+    if (from.channels < 1 || from.channels > 4)
+        fail("resize_srgb: ", from.channels, " channels; pass 1 to 4: grey or RGB, and alpha");
+    const Encoding encoding{Transfer::srgb, from.channels % 2 == 0 ? from.channels - 1 : -1, false};
+    const Resizer resizer({{from.width}, {from.height}}, {{to.width}, {to.height}}, from.channels, options);
+    return resizer.run({src, 0, encoding}, {dst, 0, encoding, {}}, parallel);
 }
 
 }  // namespace bandlimit

@@ -1,17 +1,18 @@
 // Resampling of whole images, from stored samples to stored samples.
+// Stability: stable.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "bandlimit/color/encoding.h"
+#include "bandlimit/core/axis.h"
 #include "bandlimit/core/image.h"
 #include "bandlimit/core/parallel.h"
-#include "bandlimit/resample/bank.h"
-#include "bandlimit/resample/lines.h"
+#include "bandlimit/kernel/kernel.h"
+#include "bandlimit/kernel/taps.h"
+#include "bandlimit/resample/row_filter.h"
 
 namespace bandlimit {
 
@@ -31,32 +32,9 @@ struct ResizeOptions {
     /// Deringing, 0 to 1: how much of what overshoots the range of the nearest input samples (those within one pitch of
     /// the coarser grid) is taken away. Not linear; 0 is off.
     double antiring = 0;
-    /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Without an alpha channel no matter.
+    /// Work on colour multiplied by alpha, so that transparent texels do not bleed. Has no effect without alpha.
     bool premultiply = true;
 };
-
-/// The axes of an image.
-struct Grid {
-    Axis x, y;
-};
-
-/// Source samples: rows [first_row, first_row + height) of the image, and what they mean.
-struct SourceRows {
-    AnyConstView samples;
-    int first_row = 0;
-    Encoding encoding;
-};
-
-/// Where output rows [first_row, first_row + height) go, and how they are stored.
-struct TargetRows {
-    AnyView samples;
-    int first_row = 0;
-    Encoding encoding;
-    /// If not empty: the opaque colour in linear light under the picture; alpha is dropped. [channels - 1]
-    std::vector<float> background;
-};
-
-struct ResizePlan;
 
 /// A resampling ready to run on blocks of rows, so that neither image need be in memory.
 ///
@@ -74,29 +52,27 @@ class Resizer {
 public:
     /// throws  Error as make_bank and Mapping, for antiring outside 0..1, and for channels < 1
     Resizer(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options = {});
-    ~Resizer();
     /// About how much memory such a Resizer takes, its runs by so many threads included, in bytes: known before
     /// anything is allocated. Throws Error as Mapping.
     static std::uint64_t bytes(const Grid& src, const Grid& dst, int channels, const ResizeOptions& options,
-                               Parallel parallel);
-    Resizer(Resizer&&) noexcept;
-    Resizer& operator=(Resizer&&) noexcept;
+                               const Parallel& parallel);
 
     /// The names of the kernels used along x and y; "taps" for taps.
-    const std::string& kernel_x() const;
-    const std::string& kernel_y() const;
+    const std::string& kernel_x() const { return kernel_x_; }
+    const std::string& kernel_y() const { return kernel_y_; }
 
-    /// The stored source rows [begin, end) that output rows [first, last) are made of.
-    IndexRange rows_needed(int first, int last) const;
-
-    /// Computes the rows of `target` from those of `source`, which must hold rows_needed() of them.
-    ///
-    /// returns  whether a value that is not finite was stored as the code 0
-    /// throws   Error if sizes, channels, rows or encodings do not fit, and where source and target overlap
-    bool run(const SourceRows& source, const TargetRows& target, Parallel parallel = {}) const;
+    /// What runs, for code that takes any filter.
+    const RowFilter& rows() const { return rows_; }
+    /// As those of RowFilter.
+    IndexRange rows_needed(int first, int last) const { return rows_.rows_needed(first, last); }
+    RunReport run(const SourceRows& source, const TargetRows& target, const Parallel& parallel = {},
+                  const RowProgress& progress = {}) const {
+        return rows_.run(source, target, parallel, progress);
+    }
 
 private:
-    std::unique_ptr<const ResizePlan> plan_;
+    std::string kernel_x_, kernel_y_;
+    RowFilter rows_;
 };
 
 /// Resamples linear light to width x height on the same interval: images share their corners.
@@ -104,6 +80,15 @@ private:
 /// shapes   src [w x h x c] with any strides; the result is laid out like `layout`
 /// example  resample(view, 64, 64, {.reconstruction = mitchell()})
 Image<float> resample(View<const float> src, int width, int height, const ResizeOptions& options = {},
-                      Parallel parallel = {}, Layout layout = Layout::planar);
+                      const Parallel& parallel = {}, Layout layout = Layout::planar);
+
+/// Resizes a whole picture as most programs hold it: sRGB codes of 8 or 16 bits (or floats of them), grey or RGB, with
+/// alpha as the last of 2 or 4 channels, not multiplied into the colours. In linear light, without bleeding.
+///
+/// shapes   src and dst of 1 to 4 channels each, equally many, any strides, also padded rows; dst is the caller's memory
+/// throws   Error as Resizer and its run()
+/// example  resize_srgb(interleaved(photo, 1920, 1080, 4, pitch), interleaved(thumbnail, 480, 270, 4));
+RunReport resize_srgb(const AnyConstView& src, const AnyView& dst, const ResizeOptions& options = {},
+                      const Parallel& parallel = {});
 
 }  // namespace bandlimit

@@ -329,9 +329,9 @@ TEST(Resizer, ReportsWhatIsNotFinite) {
     Image<float> src(9, 9);
     Image<std::uint8_t> dst(9, 9);
     const Resizer resizer({{9}, {9}}, {{9}, {9}}, 1);
-    EXPECT_FALSE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}));
+    EXPECT_FALSE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}).lost_non_finite);
     src.view()(4, 4) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}));
+    EXPECT_TRUE(resizer.run({View<const float>(src.view()), 0, {}}, {dst.view(), 0, {}, {}}).lost_non_finite);
 }
 
 TEST(Resizer, AutoShrinksWithOneKernelAndGrowsOrStaysWithAnother) {
@@ -515,6 +515,29 @@ TEST(Resizer, OnesStayOnesOnEveryInstructionSet) {
                 EXPECT_TRUE(is_one(resample(high.view(), 2, 9, options))) << what;
             }
     });
+}
+
+TEST(ResizeSrgb, IsTheResizerOnPaddedRows) {
+    Random random(8);
+    for (const int channels : {1, 2, 3, 4}) {
+        const int stride = 9 * channels + 5, new_stride = 4 * channels + 3;
+        std::vector<std::uint8_t> from(static_cast<std::size_t>(stride * 7)),
+            to(static_cast<std::size_t>(new_stride * 3));
+        for (std::uint8_t& code : from) code = static_cast<std::uint8_t>(random.integer(0, 255));
+        const auto src = interleaved(std::as_const(from).data(), 9, 7, channels, stride);
+        const auto dst = interleaved(to.data(), 4, 3, channels, new_stride);
+        resize_srgb(src, dst);
+        Image<std::uint8_t> expected(4, 3, channels);
+        const Encoding encoding{Transfer::srgb, channels % 2 == 0 ? channels - 1 : -1, false};
+        Resizer({{9}, {7}}, {{4}, {3}}, channels).run({src, 0, encoding}, {expected.view(), 0, encoding, {}});
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 4; ++x)
+                for (int c = 0; c < channels; ++c) ASSERT_EQ(dst(x, y, c), expected.view()(x, y, c));
+        EXPECT_EQ(to[static_cast<std::size_t>(4 * channels)], 0) << "what pads rows is left alone";
+    }
+    std::vector<std::uint8_t> five(5);
+    EXPECT_THROW(resize_srgb(interleaved(std::as_const(five).data(), 1, 1, 5), interleaved(five.data(), 1, 1, 5)),
+                 Error);
 }
 
 }  // namespace

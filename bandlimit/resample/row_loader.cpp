@@ -1,15 +1,11 @@
 #include "bandlimit/resample/row_loader.h"
 
 #include <algorithm>
-#include <variant>
+
+#include "bandlimit/resample/row_store.h"
 
 namespace bandlimit {
 namespace {
-
-template <class Any>
-Any columns_of_any(const Any& view, int first, int width) {
-    return std::visit([&](auto v) { return Any(cropped(v, first, 0, width, v.height)); }, view);
-}
 
 IndexRange part_inside(IndexRange read, int count) {
     const int begin = std::clamp(0, read.begin, read.end);
@@ -17,9 +13,6 @@ IndexRange part_inside(IndexRange read, int count) {
 }
 
 }  // namespace
-
-AnyConstView columns_of(const AnyConstView& view, int first, int width) { return columns_of_any(view, first, width); }
-AnyView columns_of(const AnyView& view, int first, int width) { return columns_of_any(view, first, width); }
 
 RowLoader::RowLoader(const SourceRows& source, IndexRange columns, int height, Edge edge_x, Edge edge_y,
                      bool premultiply)

@@ -1,13 +1,9 @@
 // Stored rows on their way into filters.
+// Stability: inner.
 #pragma once
-#include "bandlimit/resample/lines.h"
-#include "bandlimit/resample/resize.h"
+#include "bandlimit/resample/row_filter.h"
 
 namespace bandlimit {
-
-/// Columns [first, first + width) of a view of any depth.
-AnyConstView columns_of(const AnyConstView& view, int first, int width);
-AnyView columns_of(const AnyView& view, int first, int width);
 
 /// Decodes a run of columns of an image, row by row, with what its edges put beside and above it.
 class RowLoader {

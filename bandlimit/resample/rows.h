@@ -1,4 +1,5 @@
 // Buffers of rows between source and output.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -1,4 +1,5 @@
 // A window of rows that slides over an image.
+// Stability: inner.
 #pragma once
 #include <algorithm>
 

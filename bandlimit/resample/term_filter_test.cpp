@@ -38,7 +38,7 @@ double shaded(const Fetches& fetches, const Image<float>& image, int x, int y, i
 Image<float> filtered(const Fetches& fetches, const Image<float>& image, int width, int height, Edge edge) {
     const Grid src{{image.width()}, {image.height()}}, dst{{width}, {height}};
     Image<float> out(width, height, 1, Layout::interleaved);
-    TermFilter(bank_terms(fetches, src, dst, edge, edge), false)
+    term_filter(bank_terms(fetches, src, dst, edge, edge), false)
         .run({image.view(), 0, {}}, {out.view(), 0, {}, {}}, {});
     return out;
 }
@@ -103,7 +103,7 @@ TEST(TermFilter, DividesByAlphaWhatComesMultiplied) {
     const auto image = picture<float>(8, 8, 4, [](int, int, int c) { return c < 3 ? 0.125 : 0.25; });
     Image<float> out(4, 4, 4, Layout::interleaved);
     for (const bool premultiply : {true, false}) {
-        TermFilter(bank_terms(downsample8(), {{8}, {8}}, {{4}, {4}}, Edge::clamp, Edge::clamp), premultiply)
+        term_filter(bank_terms(downsample8(), {{8}, {8}}, {{4}, {4}}, Edge::clamp, Edge::clamp), premultiply)
             .run({image.view(), 0, {Transfer::linear, 3, true}}, {out.view(), 0, {Transfer::linear, 3, false}, {}}, {});
         for (int c = 0; c < 4; ++c) EXPECT_NEAR(out.view()(1, 2, c), c < 3 ? 0.5 : 0.25, 1e-6) << premultiply;
     }

@@ -1,4 +1,5 @@
 // Horizontal filters by tiles: some lines of an image, transposed for a run of x, so that the loop over lines serves.
+// Stability: inner.
 #pragma once
 #include <span>
 #include <vector>

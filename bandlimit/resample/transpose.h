@@ -1,4 +1,5 @@
 // Between rows of samples, and samples of several rows side by side.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 

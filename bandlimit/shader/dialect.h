@@ -1,4 +1,5 @@
 // Shading languages, and the one form in which the shaders of this room are written.
+// Stability: evolving.
 #pragma once
 #include <span>
 #include <string>
@@ -37,7 +38,7 @@ std::string_view extension_of(Dialect dialect);
 ///                    thread_position, texture_size(NAME, t), image_size(NAME, image), barrier(), store(image, at,
 ///                    value)
 ///
-/// Functions that all have (floor, dot, min, max, clamp, sqrt, pow) are called by their names. There are no swizzles.
+/// Functions that all languages have (floor, dot, min, max, clamp, sqrt, pow) keep their names. There are no swizzles.
 ///
 /// throws   Error for a word without its parentheses, or too few arguments: the neutral form is ours
 std::string translate(std::string_view source, Dialect dialect);

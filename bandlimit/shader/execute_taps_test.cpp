@@ -33,18 +33,18 @@ const std::vector<Taps>& all_taps() {
     return taps;
 }
 
-ShaderInfo named(std::size_t i, Direction direction) {
-    return {message("taps_", i, direction == Direction::horizontal ? "_horizontal" : "_vertical"), "a test", {}};
+ShaderInfo named(std::size_t i, PassDirection direction) {
+    return {message("taps_", i, direction == PassDirection::horizontal ? "_horizontal" : "_vertical"), "a test", {}};
 }
 
 /// A compute shader of taps, what it runs on, and what the engine makes of the same.
 struct TapsRun {
     std::size_t index;
-    Direction direction;
+    PassDirection direction;
     Edge edge;
 
     const Taps& taps() const { return all_taps()[index]; }
-    bool horizontal() const { return direction == Direction::horizontal; }
+    bool horizontal() const { return direction == PassDirection::horizontal; }
 
     Dispatch dispatch(Dialect dialect, const std::string& text, const std::string& entry) const {
         // The comment says what a workgroup makes.
@@ -90,7 +90,7 @@ struct TapsRun {
 std::vector<TapsRun> taps_runs(std::size_t edges) {
     std::vector<TapsRun> runs;
     for (std::size_t i = 0; i < all_taps().size(); ++i)
-        for (const Direction d : {Direction::horizontal, Direction::vertical})
+        for (const PassDirection d : {PassDirection::horizontal, PassDirection::vertical})
             runs.push_back({i, d, sampler_edges[runs.size() % edges]});
     return runs;
 }
@@ -131,7 +131,7 @@ TEST(CompileTaps, MetalAsCpp) {
     if (is_sanitized) GTEST_SKIP() << "not under sanitizers, which a library without them cannot be loaded into";
     std::string text;
     for (std::size_t i = 0; i < all_taps().size(); ++i)
-        for (const Direction d : {Direction::horizontal, Direction::vertical})
+        for (const PassDirection d : {PassDirection::horizontal, PassDirection::vertical})
             text += compute_shader(all_taps()[i], d, named(i, d), Dialect::msl);
     EXPECT_NO_THROW(Library(Dialect::msl, text, {"source.sample(source_sampler, uv, level(0.0f))"}));
 }

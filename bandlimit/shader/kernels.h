@@ -1,4 +1,5 @@
 // Named kernels as shader functions that read a texture anywhere between its texels: for enlarging, turning, warping.
+// Stability: evolving.
 #pragma once
 #include <span>
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace bandlimit {
 
-/// A function that is emitted as it stands.
+/// A function that is emitted verbatim.
 struct KernelShader {
     std::string_view name;     ///< of the function, and of its file
     std::string_view kernel;   ///< whose weights it has, as parse_kernel() reads it; none for functions of colours
@@ -36,7 +37,7 @@ std::string kernel_shader(std::string_view name, const std::string& command, Dia
 ///
 /// error    of the weights: about 1e-6 from rounding
 /// cost     a read per texel under the kernel, (2 ceil(radius))^2, and as many weights, of a polynomial per piece each
-/// throws   Error as piecewise_kernel(), for a radius over 16, and for a name that is no identifier
+/// throws   Error as piecewise_kernel(), for a radius over 16, and for a name that is not an identifier
 std::string pieces_shader(const KernelPieces& pieces, const ShaderInfo& info, Dialect dialect);
 
 }  // namespace bandlimit

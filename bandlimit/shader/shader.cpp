@@ -98,10 +98,10 @@ struct Tile {
 
 constexpr int largest_tile = 1024;  // float4, in 16 KiB
 
-Tile tile_of(const Taps& taps, Direction direction) {
+Tile tile_of(const Taps& taps, PassDirection direction) {
     // Rows of texels are read whole by neighbouring threads: a vertical tile is some columns wide.
     Tile tile{128, 1, 0};
-    if (direction == Direction::vertical) tile = {16, 8, 0};
+    if (direction == PassDirection::vertical) tile = {16, 8, 0};
     const auto length = [&] { return (tile.along - 1) * taps.factor + static_cast<int>(taps.weights.size()); };
     while (length() * tile.across > largest_tile && tile.across > 1) tile.across /= 2, tile.along *= 2;
     while (length() > largest_tile && tile.along > 32) tile.along /= 2;
@@ -110,14 +110,14 @@ Tile tile_of(const Taps& taps, Direction direction) {
 }
 
 /// int2(along, across) or int2(across, along).
-std::string place(Direction direction, const std::string& along, const std::string& across) {
-    return direction == Direction::horizontal ? message("int2(", along, ", ", across, ")")
-                                              : message("int2(", across, ", ", along, ")");
+std::string place(PassDirection direction, const std::string& along, const std::string& across) {
+    return direction == PassDirection::horizontal ? message("int2(", along, ", ", across, ")")
+                                                  : message("int2(", across, ", ", along, ")");
 }
 
-std::string compute_text(const Taps& taps, Direction direction, const std::string& name) {
+std::string compute_text(const Taps& taps, PassDirection direction, const std::string& name) {
     const Tile tile = tile_of(taps, direction);
-    const bool horizontal = direction == Direction::horizontal;
+    const bool horizontal = direction == PassDirection::horizontal;
     const std::string a = horizontal ? "x" : "y", b = horizontal ? "y" : "x";
     const std::string size = message(tile.length * tile.across);
     const int columns = horizontal ? tile.along : tile.across, rows = horizontal ? tile.across : tile.along;
@@ -227,10 +227,10 @@ std::string low_rank_shader(const Terms& terms, const ShaderInfo& info, Dialect 
 
 bool compute_fits(const Taps& taps) {
     return taps.factor >= 1 && taps.factor <= largest_tile && taps.weights.size() <= largest_tile &&
-           tile_of(taps, Direction::horizontal).length <= largest_tile;
+           tile_of(taps, PassDirection::horizontal).length <= largest_tile;
 }
 
-std::string compute_shader(const Taps& taps, Direction direction, const ShaderInfo& info, Dialect dialect) {
+std::string compute_shader(const Taps& taps, PassDirection direction, const ShaderInfo& info, Dialect dialect) {
     if (dialect == Dialect::cpp)
         fail("compute_shader: C++ has no workgroups; pass another dialect, or use separable_shader");
     if (taps.factor < 1) fail("compute_shader: factor = ", taps.factor, "; pass 1 or more");
@@ -238,7 +238,7 @@ std::string compute_shader(const Taps& taps, Direction direction, const ShaderIn
         fail("compute_shader: ", taps.weights.size(), " taps of factor ", taps.factor,
              " do not fit 16 KiB of shared memory; use separable_shader");
     const Tile tile = tile_of(taps, direction);
-    const bool horizontal = direction == Direction::horizontal;
+    const bool horizontal = direction == PassDirection::horizontal;
     const Header header{
         message("A compute shader that goes along ", horizontal ? "rows" : "columns", ", in workgroups of ",
                 horizontal ? tile.along : tile.across, " x ", horizontal ? tile.across : tile.along,
@@ -263,8 +263,8 @@ std::vector<ShaderFile> shaders_of(const ShaderParts& parts, const ShaderInfo& i
     if (!parts.reads.empty())
         add(parts.fetches.empty() ? "" : "_separable", separable_shader(parts.reads, info, dialect));
     if (!parts.taps.weights.empty() && compute_fits(parts.taps) && dialect != Dialect::cpp) {
-        for (const auto& [direction, suffix] : {std::pair{Direction::horizontal, "_compute_horizontal"},
-                                                std::pair{Direction::vertical, "_compute_vertical"}}) {
+        for (const auto& [direction, suffix] : {std::pair{PassDirection::horizontal, "_compute_horizontal"},
+                                                std::pair{PassDirection::vertical, "_compute_vertical"}}) {
             ShaderInfo named = info;
             named.name += suffix;
             add(suffix, compute_shader(parts.taps, direction, named, dialect));

@@ -1,4 +1,4 @@
-// Designs as shader source that is pasted without editing.
+// Designs as shader source to paste without editing.
 //
 // Every text begins with a comment: what it computes, the lines that its maker passed, its cost, the command that made
 // it, and its parameters. What follows are functions that any stage may call (they read level 0 explicitly), or one
@@ -8,6 +8,7 @@
 //     uv        where the output lies in it, from 0 to 1 between its outer edges: (i + 1/2) * factor * texel for the
 //               output i of a filter that shrinks by `factor`
 //     texel     1 / size of source
+// Stability: evolving.
 #pragma once
 #include <span>
 #include <string>
@@ -21,14 +22,14 @@
 
 namespace bandlimit {
 
-/// What a shader is called and what its comment says.
+/// The name of a shader and the text of its comment.
 struct ShaderInfo {
     std::string name = {};                ///< of the function, or what names of several begin with: [a-z][a-z0-9_]*
     std::string command = {};             ///< that made it; empty: not said
     std::vector<std::string> notes = {};  ///< lines: what it is, its error, its response
 };
 
-/// Throws Error for a name that is no identifier in every dialect, as all that follow do.
+/// Throws Error for a name that is not an identifier in every dialect, as all functions below do.
 void check_shader_name(const std::string& name);
 
 /// A file of shader source.
@@ -59,7 +60,7 @@ std::string load_shader(const WeightGrid& weights, const ShaderInfo& info, Diale
 std::string low_rank_shader(const Terms& terms, const ShaderInfo& info, Dialect dialect);
 
 /// How a compute shader goes along an axis.
-enum class Direction { horizontal, vertical };
+enum class PassDirection { horizontal, vertical };
 
 /// A whole compute shader, with its bindings, that applies `taps` along one axis: a workgroup reads each texel that it
 /// needs once, into shared memory. One thread is one output; a picture of W x H outputs takes
@@ -67,12 +68,12 @@ enum class Direction { horizontal, vertical };
 /// therefore decides about edges, and may be nearest or linear.
 ///
 /// throws   Error also for Dialect::cpp, for factor < 1, and for more taps than shared memory holds, see compute_fits()
-std::string compute_shader(const Taps& taps, Direction direction, const ShaderInfo& info, Dialect dialect);
+std::string compute_shader(const Taps& taps, PassDirection direction, const ShaderInfo& info, Dialect dialect);
 
 /// Whether the texels under a row of threads fit the 16 KiB of shared memory that every device has.
 bool compute_fits(const Taps& taps);
 
-/// A design in all the ways that it can be run: what is empty is not shipped.
+/// A design in all forms in which it can run. Empty parts are not emitted.
 struct ShaderParts {
     Fetches fetches = {};                ///< fetch_shader
     std::vector<LinearRead> reads = {};  ///< separable_shader: the taps, folded
@@ -85,8 +86,7 @@ struct ShaderParts {
 /// design with both fetches and taps has NAME.glsl and NAME_separable.glsl, one with terms NAME_low_rank.glsl.
 ///
 /// throws   Error if there is nothing to ship
-/// example  shaders_of({.reads = fold(taps), .taps = taps}, {"blur", "bandlimit design gaussian --sigma 2"},
-/// Dialect::wgsl)
+/// example  shaders_of({.reads = fold(taps), .taps = taps}, {"blur", "bandlimit design gaussian"}, Dialect::wgsl)
 std::vector<ShaderFile> shaders_of(const ShaderParts& parts, const ShaderInfo& info, Dialect dialect);
 
 }  // namespace bandlimit

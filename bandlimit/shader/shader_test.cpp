@@ -115,9 +115,9 @@ TEST(Shader, BadArgumentsAreRefused) {
     EXPECT_THROW(load_shader({}, {"f"}, Dialect::glsl), Error);
     EXPECT_THROW(low_rank_shader({}, {"f"}, Dialect::glsl), Error);
     EXPECT_THROW(low_rank_shader({{{1}, {1, 2}}, {{1}, {1}}}, {"f"}, Dialect::glsl), Error);
-    EXPECT_THROW(compute_shader(blur, Direction::vertical, {"f"}, Dialect::cpp), Error);
-    EXPECT_THROW(compute_shader({0, {1}, 0}, Direction::vertical, {"f"}, Dialect::glsl), Error);
-    EXPECT_THROW(compute_shader({0, std::vector<double>(1100, 1), 1}, Direction::vertical, {"f"}, Dialect::glsl),
+    EXPECT_THROW(compute_shader(blur, PassDirection::vertical, {"f"}, Dialect::cpp), Error);
+    EXPECT_THROW(compute_shader({0, {1}, 0}, PassDirection::vertical, {"f"}, Dialect::glsl), Error);
+    EXPECT_THROW(compute_shader({0, std::vector<double>(1100, 1), 1}, PassDirection::vertical, {"f"}, Dialect::glsl),
                  Error);
     EXPECT_THROW(kernel_shader("bspline", "", Dialect::glsl), Error);
 }
@@ -129,7 +129,7 @@ TEST(Shader, ComputeFitsSharedMemory) {
         for (const std::size_t count : {1u, 60u, 97u, 300u, 800u}) {
             const Taps taps{0, std::vector<double>(count, 0.1), factor};
             if (!compute_fits(taps)) continue;
-            for (const Direction d : {Direction::horizontal, Direction::vertical}) {
+            for (const PassDirection d : {PassDirection::horizontal, PassDirection::vertical}) {
                 const std::string text = compute_shader(taps, d, {"f"}, Dialect::glsl);
                 std::smatch found;
                 ASSERT_TRUE(std::regex_search(text, found, tile)) << text;

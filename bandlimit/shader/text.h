@@ -1,4 +1,5 @@
 // The comment above a shader, and numbers in its code.
+// Stability: inner.
 #pragma once
 #include <string>
 
@@ -15,8 +16,8 @@ struct Header {
     Reads reads = Reads::samples;
 };
 
-/// The comment, and `source`, which is neutral, translated and ready to be pasted.
-/// throws   Error for a name that is no identifier
+/// The comment, then `source` translated from the neutral form: ready to paste.
+/// throws   Error for a name that is not an identifier
 std::string shader_text(const ShaderInfo& info, const Header& header, const std::string& source, Dialect dialect);
 
 /// `value` as all dialects read it, with enough digits for a float: "0.125", "1.0", "-2.5e-05".

@@ -1,4 +1,5 @@
 // What the words of the neutral form are in each shading language: tables, and nothing else.
+// Stability: inner.
 #pragma once
 #include <array>
 #include <optional>

@@ -1,4 +1,5 @@
 // What the signals check of their options.
+// Stability: inner.
 #pragma once
 #include <cmath>
 

@@ -15,7 +15,7 @@ namespace {
 struct Profile {
     double center, wide, narrow;
 
-    Profile(const Cell& cell, const Direction& direction) {
+    Profile(const Cell& cell, const UnitVector& direction) {
         const Point at = middle(cell);
         const double u = std::abs(direction.x) * (cell.x1 - cell.x0), v = std::abs(direction.y) * (cell.y1 - cell.y0);
         center = direction.along(at.x, at.y);
@@ -48,12 +48,12 @@ double quadrant_area(const Cell& cell, double radius) {
 
 }  // namespace
 
-Direction direction_at(double degrees) {
+UnitVector direction_at(double degrees) {
     const double turn = std::fmod(degrees, 360.0);
     return {sin_pi((turn + 90) / 180), sin_pi(turn / 180)};
 }
 
-Extent extent_along(const Cell& cell, const Direction& direction) {
+Extent extent_along(const Cell& cell, const UnitVector& direction) {
     const Profile profile(cell, direction);
     return {profile.center - profile.base(), profile.center + profile.base()};
 }
@@ -64,7 +64,7 @@ int panels_for(double periods) {
     return 1 + static_cast<int>(periods);
 }
 
-double share_below(const Cell& cell, const Direction& direction, double t) {
+double share_below(const Cell& cell, const UnitVector& direction, double t) {
     const Profile profile(cell, direction);
     const double from_center = t - profile.center;
     const double in = profile.base() - std::abs(from_center);  // how far the line is inside, from the nearer side
@@ -74,7 +74,7 @@ double share_below(const Cell& cell, const Direction& direction, double t) {
     return from_center > 0 ? 1 - share : share;
 }
 
-double mean_along(const Cell& cell, const Direction& direction, const std::function<double(double)>& f,
+double mean_along(const Cell& cell, const UnitVector& direction, const std::function<double(double)>& f,
                   std::vector<double> knots, double frequency) {
     const Profile profile(cell, direction);
     const auto [begin, end] = extent_along(cell, direction);

@@ -30,7 +30,7 @@ double counted(const Cell& cell, const std::function<bool(double, double)>& insi
 }
 constexpr double count_bound = 2.0 / 400;
 
-TEST(Direction, IsExactWhereItCanBe) {
+TEST(Coverage, IsExactWhereItCanBe) {
     EXPECT_EQ(direction_at(0).x, 1);
     EXPECT_EQ(direction_at(0).y, 0);
     EXPECT_EQ(direction_at(90).x, 0);
@@ -58,7 +58,7 @@ TEST(ShareBelow, AgreesWithCounting) {
     Random random(1);
     for (int k = 0; k < 60; ++k) {
         const Cell cell = random_cell(random);
-        const Direction direction = direction_at(random.uniform(-180, 180));
+        const UnitVector direction = direction_at(random.uniform(-180, 180));
         const auto [low, high] = extent_along(cell, direction);
         const double t = random.uniform(low - 0.1, high + 0.1);
         const auto inside = [&](double x, double y) { return direction.along(x, y) < t; };
@@ -83,7 +83,7 @@ TEST(MeanAlong, OfAStepIsTheShareBelow) {
     Random random(3);
     for (int k = 0; k < 100; ++k) {
         const Cell cell = random_cell(random);
-        const Direction direction = direction_at(45.0 * random.integer(0, 8) + (k % 2) * 7.3);
+        const UnitVector direction = direction_at(45.0 * random.integer(0, 8) + (k % 2) * 7.3);
         const double t = random.uniform(-4, 4);
         const double mean = mean_along(cell, direction, [t](double s) { return s < t ? 1.0 : 0.0; }, {t});
         EXPECT_NEAR(mean, share_below(cell, direction, t), 1e-13);
@@ -92,7 +92,7 @@ TEST(MeanAlong, OfAStepIsTheShareBelow) {
 
 TEST(MeanAlong, OfAWaveIsAProductOfSincs) {
     const Cell cell{1, 2, 2.5, 3};
-    const Direction direction = direction_at(20);
+    const UnitVector direction = direction_at(20);
     for (const double f : {0.1, 0.5, 3.0, 40.0}) {
         const auto wave = [f](double t) { return std::cos(2 * pi * f * t); };
         const auto sinc = [](double x) { return std::sin(pi * x) / (pi * x); };

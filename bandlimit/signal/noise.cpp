@@ -14,11 +14,9 @@
 namespace bandlimit {
 namespace {
 
-/// A number that depends on its arguments alone: each is stirred into the sequence that the ones before it began.
+/// A number that depends on its arguments alone.
 double random_at(std::uint64_t seed, std::int64_t x, std::int64_t y) {
-    const std::uint64_t column = Random(seed).bits() + static_cast<std::uint64_t>(x);
-    const std::uint64_t cell = Random(column).bits() + static_cast<std::uint64_t>(y);
-    return Random(cell).uniform();
+    return uniform_from(hash_of(seed, static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y)));
 }
 
 /// One period of a band-limited function, finely enough sampled that interpolation between the samples is exact: at

@@ -2,6 +2,7 @@
 //
 // Supersampling is a reduction of a fine image, and reductions have one engine here: so this room may include
 // `resample`, which knows nothing of signals.
+// Stability: evolving.
 #pragma once
 #include "bandlimit/core/image.h"
 #include "bandlimit/core/parallel.h"
@@ -31,21 +32,18 @@ struct Sampling {
 
 /// Draws `signal` at the samples of `grid` into `image`, linear light.
 ///
-/// Kernels are normalised to pass a constant unchanged and never see an edge: the signal goes on outside the image.
-/// exact needs, for box, a signal with a mean over cells (all but siemens and noise); for other separable kernels one
-/// with a product of waves (zoneplate, sinusoidal stripes, chirp along x or y). supersampled takes any signal and any
-/// kernel, radial ones too, but nearest.
+/// Kernels are normalised to preserve constants, and never meet an edge: the signal continues outside the image. With
+/// box, exact needs a signal with a mean over cells (all except siemens and noise); with other separable kernels, a
+/// product of waves (zoneplate, sinusoidal stripes, chirp along x or y). supersampled takes any signal and any kernel
+/// except nearest, including radial ones.
 ///
 /// shapes   image [grid.x.count x grid.y.count x 1]
 /// units    grid in the pixels of the signal; {width, 0, width} is the image, {width / 2, 0, width} its half size
-/// error    point and exact: the float nearest to the value to within about 1e-12. supersampled with box: the jumps of
-/// a
-///          signal cost up to 1 / samples of a pixel; with smooth kernels what lies above samples - 1/2 cycles per
-///          pixel aliases. Same bits for any number of threads, and for a part of the image (Axis::cells) on whole
-///          pixels
+/// error    point and exact: the float nearest to the value to within about 1e-12. supersampled with box: a jump of the
+///          signal costs up to 1 / samples of a pixel; with smooth kernels, frequencies above samples - 1/2 cycles per
+///          pixel alias. Same bits for any number of threads, and for a part of the image (Axis::cells) on whole pixels
 /// cost     point: one value per pixel. exact: one mean per pixel, or, for products, one 1D integral per row and
-/// column.
-///          supersampled: samples^2 values per pixel, one pass of Resizer, and about 64 MB
+///          column. supersampled: samples^2 values per pixel, one pass of Resizer, and about 64 MB
 /// throws   Error if shapes disagree, the signal has no exact form for this kernel, or `samples` is out of range
 void render(const Signal& signal, const Grid& grid, const Sampling& sampling, View<float> image,
             Parallel parallel = {});

@@ -17,7 +17,7 @@ double overlap(double a0, double a1, double b0, double b1) {
 }
 
 /// The coordinate along `direction` of a line that passes the middle of the frame at a distance.
-double line_position(const Frame& frame, const Direction& direction, double offset) {
+double line_position(const Frame& frame, const UnitVector& direction, double offset) {
     const Point at = middle(frame);
     return direction.along(at.x, at.y) + offset;
 }
@@ -60,7 +60,7 @@ Signal step_edge(const Frame& frame, const StepEdgeOptions& options) {
     check_frame("step_edge", frame);
     check_angle("step_edge", options.angle);
     check_position("step_edge", "offset", options.offset);
-    const Direction direction = direction_at(options.angle);
+    const UnitVector direction = direction_at(options.angle);
     const double edge = line_position(frame, direction, options.offset);
     const auto value = [=](double x, double y) { return step(direction.along(x, y) - edge); };
     return {"edge", value, [=](const Cell& cell) { return 1 - share_below(cell, direction, edge); }, {}};
@@ -71,7 +71,7 @@ Signal thin_line(const Frame& frame, const ThinLineOptions& options) {
     check_angle("thin_line", options.angle);
     check_position("thin_line", "offset", options.offset);
     check_option("thin_line", "width", options.width, 1e-9, largest_position, "1e-9 to 4e9 pixels");
-    const Direction direction = direction_at(options.angle);
+    const UnitVector direction = direction_at(options.angle);
     const double center = line_position(frame, direction, options.offset);
     const double begin = center - options.width / 2, end = center + options.width / 2;
     const auto value = [=](double x, double y) {
@@ -135,7 +135,7 @@ Signal disc(const Frame& frame, const DiscOptions& options) {
 Signal ramp(const Frame& frame, const RampOptions& options) {
     check_frame("ramp", frame);
     check_angle("ramp", options.angle);
-    const Direction direction = direction_at(options.angle);
+    const UnitVector direction = direction_at(options.angle);
     const auto [first, last] = extent_along({0, 0, frame.width, frame.height}, direction);
     const double length = options.length.value_or(last - first);
     check_length("ramp", "length", length);

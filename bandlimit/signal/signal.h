@@ -7,8 +7,9 @@
 //   direction  an angle says along which direction a signal varies: 0 across vertical lines, 90 across horizontal ones
 //   range      values lie in [0, 1] and are linear light (noise of a given RMS may leave the range); with_range()
 //              changes it. At a jump the value is the mean of both sides
-//   extent     signals go on outside the frame, so that a filter needs no edge mode
+//   extent     signals continue outside the frame, so that filters need no edge mode
 //   throws     Error for options that are not finite or out of the range stated with them
+// Stability: evolving.
 #pragma once
 #include <complex>
 #include <cstdint>
@@ -16,13 +17,11 @@
 #include <optional>
 #include <string>
 
+#include "bandlimit/core/point.h"
+
 namespace bandlimit {
 
-struct Point {
-    double x = 0, y = 0;
-};
-
-/// The rectangle [0, width] x [0, height] that an image shall show. Both above 0.
+/// The rectangle [0, width] x [0, height] that an image shows. Both above 0.
 struct Frame {
     double width = 0, height = 0;
 };
@@ -53,7 +52,7 @@ struct Signal {
     std::optional<WaveProduct> product;           ///< the same function, for signals of this form
 };
 
-/// `signal` with 0 and 1 mapped to `low` and `high`, all else in proportion.
+/// `signal` with values mapped linearly: 0 to `low`, 1 to `high`.
 Signal with_range(const Signal& signal, double low, double high);
 
 /// The same value everywhere.
@@ -63,7 +62,7 @@ Signal constant(double value);
 /// distance r from the centre and is max_frequency at `radius`.
 ///
 /// Along each axis it is max_frequency at most wherever |x|, |y| <= radius. The default radius reaches the midpoint of
-/// the farther border; with 0.5 no pixel of the frame then holds more than the pixel grid can carry.
+/// the farther border; with 0.5 no pixel of the frame then exceeds what the pixel grid can represent.
 struct ZonePlateOptions {
     double max_frequency = 0.5;  ///< > 0
     double phase = 0;
@@ -147,25 +146,24 @@ Signal impulse(const Frame& frame, const ImpulseOptions& options = {});
 struct ThinLineOptions {
     double angle = 30;  ///< across the line: 0 draws a vertical one
     double offset = 0;  ///< distance from the middle of the frame, along `angle`
-    double width = 1;   ///< > 0, and below a pixel if wanted
+    double width = 1;   ///< > 0, may be below a pixel
 };
 Signal thin_line(const Frame& frame, const ThinLineOptions& options = {});
 
 /// Uniform noise in [0, 1), constant on each pixel and independent between pixels. A pixel's value depends on its
-/// indices and the seed alone: not on the size of the image, nor on what was asked before.
+/// indices and the seed alone: not on the size of the image, nor on earlier calls.
 struct WhiteNoiseOptions {
     std::uint64_t seed = 1;
 };
 Signal white_noise(const WhiteNoiseOptions& options = {});
 
-/// Normally distributed noise of mean 1/2, periodic with the frame, that holds no frequency above a cut-off: white
-/// noise behind a brick wall that is round in two dimensions.
+/// Normally distributed noise of mean 1/2, periodic with the frame, without frequencies above a cut-off: white noise
+/// after an ideal low-pass that is round in two dimensions.
 ///
 /// error    exact to double precision at the centres of pixels; elsewhere within 1e-6 of the RMS, by interpolation
-/// cost     16 bytes and one Fourier transform per pixel, four times that for each doubling of the cut-off from 0.25
-/// on;
-///          a value away from the centres takes some microseconds
-/// throws   Error also if no frequency of the frame but 0 lies within the cut-off
+/// cost     16 bytes and one Fourier transform per pixel, four times that for each doubling of the cut-off beyond 0.25;
+///          a value away from the centres takes a few microseconds
+/// throws   Error also if the only frequency of the frame within the cut-off is 0
 struct BandLimitedNoiseOptions {
     std::uint64_t seed = 1;
     double cutoff = 0.25;  ///< > 0, up to 16, cycles per pixel
@@ -173,7 +171,7 @@ struct BandLimitedNoiseOptions {
 };
 Signal band_limited_noise(int width, int height, const BandLimitedNoiseOptions& options = {});
 
-/// How many bytes that noise takes as long as it lives.
+/// The memory that this noise holds, in bytes.
 std::uint64_t band_limited_noise_bytes(int width, int height, const BandLimitedNoiseOptions& options = {});
 
 }  // namespace bandlimit

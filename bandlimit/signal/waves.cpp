@@ -61,7 +61,7 @@ private:
     }
 };
 
-Signal sinusoid(const Direction& direction, double frequency, double phase) {
+Signal sinusoid(const UnitVector& direction, double frequency, double phase) {
     const auto wave = [](double f, double start, double scale) {
         return Wave{[f, start, scale](double x) { return scale * oscillation(f * x + start); },
                     [f](double) { return std::abs(f); }};
@@ -75,7 +75,7 @@ Signal sinusoid(const Direction& direction, double frequency, double phase) {
 }
 
 /// A wave along x or y alone.
-WaveProduct plane_product(const Direction& direction, const Wave& wave) {
+WaveProduct plane_product(const UnitVector& direction, const Wave& wave) {
     const Wave one{[](double) { return 1.0; }, [](double) { return 0.0; }};
     return direction.y == 0 ? WaveProduct{0.5, wave, one} : WaveProduct{0.5, one, wave};
 }
@@ -124,7 +124,7 @@ Signal chirp(const Frame& frame, const ChirpOptions& options) {
     check_option("chirp", "to", options.to, least, 1e3, help);
     check_angle("chirp", options.angle);
     check_phase("chirp", options.phase);
-    const Direction direction = direction_at(options.angle);
+    const UnitVector direction = direction_at(options.angle);
     const double length = std::abs(direction.x) * frame.width + std::abs(direction.y) * frame.height;
     const Point at = middle(frame);
     const double begin = direction.along(at.x, at.y) - length / 2;
@@ -153,7 +153,7 @@ Signal stripes(const StripesOptions& options) {
     check_angle("stripes", options.angle);
     check_phase("stripes", options.phase);
     check_option("stripes", "duty", options.duty, 0, 1, "0 to 1");
-    const Direction direction = direction_at(options.angle);
+    const UnitVector direction = direction_at(options.angle);
     if (options.sinusoid) return sinusoid(direction, 1 / options.period, options.phase);
     const auto value = [direction, o = options](double x, double y) {
         const double periods = direction.along(x, y) / o.period + o.phase, part = periods - std::floor(periods);

@@ -1,4 +1,5 @@
 // The share of texels that an alpha test lets pass.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -1,4 +1,5 @@
 // The levels of a mip chain, each from the one above, a few rows at a time.
+// Stability: inner.
 #pragma once
 #include <algorithm>
 #include <functional>

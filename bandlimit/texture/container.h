@@ -1,4 +1,5 @@
 // Textures in files that graphics interfaces load: KTX2 and DDS, uncompressed. What others read: docs/containers.md.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <functional>

@@ -1,4 +1,5 @@
 // What KTX2 and DDS have in common: numbers in headers, and where texels lie. Not for callers.
+// Stability: inner.
 #pragma once
 #include <cstddef>
 #include <cstdint>

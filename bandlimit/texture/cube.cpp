@@ -6,15 +6,15 @@
 namespace bandlimit {
 namespace {
 
-int dot(const Direction& a, const Direction& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+int dot(const IntVector& a, const IntVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-Direction scaled(const Direction& a, int by) { return {a[0] * by, a[1] * by, a[2] * by}; }
+IntVector scaled(const IntVector& a, int by) { return {a[0] * by, a[1] * by, a[2] * by}; }
 
-Direction sum(const Direction& a, const Direction& b, const Direction& c) {
+IntVector sum(const IntVector& a, const IntVector& b, const IntVector& c) {
     return {a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
 }
 
-int face_towards(const Direction& outward) {
+int face_towards(const IntVector& outward) {
     const auto& faces = cube_faces();
     return static_cast<int>(
         std::find_if(faces.begin(), faces.end(), [&](const CubeFace& f) { return f.outward == outward; }) -
@@ -44,14 +44,14 @@ CubeTexel cube_texel(int face, int x, int y, int size) {
     const bool along_x = !is_inside(x, size);
     const int across = place(along_x ? x : y), along = place(along_x ? y : x);
     const int sign = across > 0 ? 1 : -1;
-    const Direction outward = scaled(along_x ? from.right : from.down, sign);
+    const IntVector outward = scaled(along_x ? from.right : from.down, sign);
     // What lies beyond the edge in the plane lies as far down the side.
     const int depth = sign * across - size;
-    const Direction point =
+    const IntVector point =
         sum(scaled(outward, size), scaled(from.outward, size - depth), scaled(along_x ? from.down : from.right, along));
     const int neighbour = face_towards(outward);
     const CubeFace& to = cube_faces()[static_cast<std::size_t>(neighbour)];
-    const auto index = [&](const Direction& axis) { return (dot(point, axis) + size - 1) / 2; };
+    const auto index = [&](const IntVector& axis) { return (dot(point, axis) + size - 1) / 2; };
     return {neighbour, index(to.right), index(to.down)};
 }
 

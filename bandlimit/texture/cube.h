@@ -1,4 +1,5 @@
 // The faces of a cube, and what lies beyond their edges.
+// Stability: inner.
 #pragma once
 #include <array>
 #include <span>
@@ -9,11 +10,11 @@
 namespace bandlimit {
 
 /// A point or direction in whole numbers.
-using Direction = std::array<int, 3>;
+using IntVector = std::array<int, 3>;
 
 /// How a face lies: the point of its texels is outward + u * right + v * down, u and v from -1 to 1.
 struct CubeFace {
-    Direction outward, right, down;
+    IntVector outward, right, down;
 };
 /// +x -x +y -y +z -z, as Direct3D, OpenGL and Vulkan have them (Vulkan 1.3, "Cube Map Face Selection").
 const std::array<CubeFace, 6>& cube_faces();

@@ -172,7 +172,7 @@ TEST(MakeCubeMips, KeepConstants) {
 }
 
 /// A quarter turn about y and one about x, and the mirror image x to -x, generate all symmetries of the cube.
-std::vector<Image<float>> moved(const std::vector<Image<float>>& faces, const std::array<Direction, 3>& matrix) {
+std::vector<Image<float>> moved(const std::vector<Image<float>>& faces, const std::array<IntVector, 3>& matrix) {
     const int n = faces[0].width();
     std::vector<Image<float>> result;
     for (int face = 0; face < 6; ++face)
@@ -198,7 +198,7 @@ TEST(MakeCubeMips, TurnWithTheCube) {
     std::vector<Image<float>> faces;
     for (int f = 0; f < 6; ++f)
         faces.push_back(picture<float>(16, 16, 1, [&](int, int, int) { return random.uniform(); }));
-    const std::array<std::array<Direction, 3>, 3> symmetries{{{{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
+    const std::array<std::array<IntVector, 3>, 3> symmetries{{{{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
                                                               {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}},
                                                               {{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
     for (const MipFilter& filter : {MipFilter(Auto{}), MipFilter(downsample8()), MipFilter(jinc_lanczos(2))}) {

@@ -1,4 +1,5 @@
 // Textures in DDS files. Not for callers: container.h has the functions.
+// Stability: inner.
 #pragma once
 #include "bandlimit/texture/container_layout.h"
 

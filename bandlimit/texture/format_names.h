@@ -1,4 +1,5 @@
 // What graphics interfaces call their texel formats. Not for callers.
+// Stability: inner.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,5 @@
 // Textures in KTX 2.0 files. Not for callers: container.h has the functions.
+// Stability: inner.
 #pragma once
 #include "bandlimit/texture/container_layout.h"
 

@@ -7,23 +7,6 @@
 #include "bandlimit/resample/fetch_banks.h"
 
 namespace bandlimit {
-namespace {
-
-std::variant<Resizer, TermFilter> make_filter(const MipFilter& filter, const Grid& src, const Grid& dst, int channels,
-                                              const LevelFilter::Options& o) {
-    if (const auto* fetches = std::get_if<Fetches>(&filter))
-        return TermFilter(bank_terms(*fetches, src, dst, o.edge_x, o.edge_y), o.premultiply);
-    const auto* taps = std::get_if<Taps>(&filter);
-    if (taps && (src.x.count == dst.x.count || src.y.count == dst.y.count))
-        return TermFilter(bank_terms(*taps, src, dst, o.edge_x, o.edge_y), o.premultiply);
-    ResizeOptions options{.edge = o.edge_x, .edge_y = o.edge_y, .premultiply = o.premultiply};
-    if (taps) options.reconstruction = *taps;
-    if (const auto* kernel = std::get_if<Kernel>(&filter)) options.reconstruction = *kernel;
-    return Resizer(src, dst, channels, options);
-}
-
-}  // namespace
-
 Fetches downsample8() {
     constexpr double inner = 0.75777, arm = 2.907, inner_weight = 0.37487566, arm_weight = -0.12487566;
     return {{-inner, -inner, inner_weight}, {inner, -inner, inner_weight}, {inner, inner, inner_weight},
@@ -31,12 +14,16 @@ Fetches downsample8() {
             {0, -arm, arm_weight},          {0, arm, arm_weight}};
 }
 
-LevelFilter::LevelFilter(const MipFilter& filter, const Grid& src, const Grid& dst, int channels,
-                         const Options& options)
-    : filter_(make_filter(filter, src, dst, channels, options)) {}
-
-bool LevelFilter::run(const SourceRows& source, const TargetRows& target, Parallel parallel) const {
-    return std::visit([&](const auto& f) { return f.run(source, target, parallel); }, filter_);
+RowFilter level_filter(const MipFilter& filter, const Grid& src, const Grid& dst, int channels, const LevelOptions& o) {
+    if (const auto* fetches = std::get_if<Fetches>(&filter))
+        return term_filter(bank_terms(*fetches, src, dst, o.edge_x, o.edge_y), o.premultiply);
+    const auto* taps = std::get_if<Taps>(&filter);
+    if (taps && (src.x.count == dst.x.count || src.y.count == dst.y.count))
+        return term_filter(bank_terms(*taps, src, dst, o.edge_x, o.edge_y), o.premultiply);
+    ResizeOptions options{.edge = o.edge_x, .edge_y = o.edge_y, .premultiply = o.premultiply};
+    if (taps) options.reconstruction = *taps;
+    if (const auto* kernel = std::get_if<Kernel>(&filter)) options.reconstruction = *kernel;
+    return Resizer(src, dst, channels, options).rows();
 }
 
 int reach_of(const MipFilter& filter, double step) {

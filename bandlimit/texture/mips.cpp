@@ -57,19 +57,16 @@ int check_levels(Size base, const MipOptions& options) {
     return count;
 }
 
-Grid grid_of(Size samples, Size interval) {
-    return {{samples.width, 0, static_cast<double>(interval.width)},
-            {samples.height, 0, static_cast<double>(interval.height)}};
-}
-
 /// Normals that lie outside as zero vectors make means shorter and turn none: the same as to leave them out.
-LevelFilter::Options edges_of(const MipOptions& options) {
-    const auto edge = [&](Edge e) { return options.role == Role::normal && e == Edge::zero ? Edge::renormalize : e; };
+LevelOptions edges_of(const MipOptions& options) {
+    const auto edge = [&](Edge e) {
+        return traits_of(options.role).finish == LevelFinish::unit_length && e == Edge::zero ? Edge::renormalize : e;
+    };
     return {edge(options.edge_x), edge(options.edge_y), true};
 }
 
 ResizeOptions resize_options(const MipOptions& options) {
-    const LevelFilter::Options edges = edges_of(options);
+    const LevelOptions edges = edges_of(options);
     ResizeOptions resize{.edge = edges.edge_x, .edge_y = edges.edge_y};
     if (const auto* kernel = std::get_if<Kernel>(&options.filter)) resize.reconstruction = *kernel;
     return resize;
@@ -77,50 +74,83 @@ ResizeOptions resize_options(const MipOptions& options) {
 
 constexpr std::size_t face_count = 6;
 
-/// Levels of six faces, each filtered with the margins that its kernel reaches into.
-class CubeMaker {
+/// The levels of a picture, or of the six faces of a cube, from large to small.
+class LevelMaker {
 public:
-    CubeMaker(std::span<const AnyConstView> faces, const Encoding& stored, const TexelFormat& target,
-              const MipOptions& options, Parallel parallel)
-        : options_(options), parallel_(parallel), length_(size_of_view(faces[0]).width) {
-        for (const AnyConstView& face : faces) {
-            roles_.emplace_back(face, stored, target, options, parallel);
-            MipChain& chain = chains_.emplace_back();
-            chain.images.push_back(roles_.back().level_zero(chain.lost_non_finite, parallel));
-            above_.push_back(roles_.back().source_as_floats(parallel));
-            roles_.back().release_source();
+    LevelMaker(std::span<const AnyConstView> faces, const Encoding& stored, const TexelFormat& target,
+               const MipOptions& options, Parallel parallel)
+        : options_(options),
+          parallel_(parallel),
+          size_(size_of_view(faces[0])),
+          count_(check_levels(size_, options)),
+          is_cube_(faces.size() == face_count) {
+        for (const AnyConstView& base : faces) {
+            Face face{RoleLevels(base, stored, target, options, parallel), {}, {}};
+            face.chain.images.push_back(face.role.level_zero(face.chain.lost_non_finite, parallel));
+            if (is_cube_) {  // margins are copied from floats
+                face.above = face.role.source_as_floats(parallel);
+                face.role.release_source();
+            }
+            faces_.push_back(std::move(face));
         }
     }
 
-    void make_level(int level) {
-        const int to = mip_length(length_, level), from = above_[0].width();
-        const int margin = std::min(from, reach_of(options_.filter, static_cast<double>(from) / to));
-        const Axis wide{from + 2 * margin, static_cast<double>(-margin), static_cast<double>(from + margin)};
-        const Axis axis{to, 0, static_cast<double>(from)};
-        // A margin is no longer than the face; what a wide kernel reads beyond it is dropped.
-        const LevelFilter filter(options_.filter, {wide, wide}, {axis, axis}, roles_[0].channels(), {});
-        std::vector<View<const float>> views;
-        for (const Image<float>& image : above_) views.push_back(image.view());
-        std::vector<Image<float>> made(face_count);
-        for (std::size_t face = 0; face < face_count; ++face) {
-            const Image<float> source = extended_face(views, static_cast<int>(face), margin, parallel_);
-            MipChain& chain = chains_[face];
-            chain.images.push_back(roles_[face].level(filter, {source.view(), 0, roles_[face].between()}, made[face],
-                                                      options_.from == MipSource::previous, to, to,
-                                                      chain.lost_non_finite, parallel_));
-        }
-        if (options_.from == MipSource::previous) above_ = std::move(made);
+    std::vector<MipChain> make() {
+        for (int level = 1; level < count_; ++level) make_level(level);
+        std::vector<MipChain> chains;
+        for (Face& face : faces_) chains.push_back(std::move(face.chain));
+        return chains;
     }
-
-    std::vector<MipChain> take() { return std::move(chains_); }
 
 private:
+    struct Face {
+        RoleLevels role;
+        Image<float> above;  ///< what the next level is made of, but level 1 of a picture
+        MipChain chain;
+    };
+
+    void make_level(int level) {
+        const bool from_previous = options_.from == MipSource::previous, from_base = level == 1 || !from_previous;
+        const Size from = at_level(size_, from_base ? 0 : level - 1), to = at_level(size_, level);
+        // A margin is no longer than the face; what a wide kernel reads beyond it is dropped.
+        const int margin =
+            is_cube_ ? std::min(from.width, reach_of(options_.filter, double(from.width) / to.width)) : 0;
+        const auto source_axis = [&](int length) {
+            return Axis{length + 2 * margin, double(-margin), double(length + margin)};
+        };
+        const RowFilter filter =
+            level_filter(options_.filter, {source_axis(from.width), source_axis(from.height)},
+                         {{to.width, 0, double(from.width)}, {to.height, 0, double(from.height)}},
+                         faces_[0].role.channels(), is_cube_ ? LevelOptions() : edges_of(options_));
+        std::vector<Image<float>> made(faces_.size());
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            Face& face = faces_[i];
+            const Image<float> wide = is_cube_ ? extended_face(above(), int(i), margin, parallel_) : Image<float>();
+            const SourceRows source = is_cube_    ? SourceRows{wide.view(), 0, face.role.between()}
+                                      : from_base ? face.role.source()
+                                                  : SourceRows{face.above.view(), 0, face.role.between()};
+            face.chain.images.push_back(face.role.level(filter, source, made[i], from_previous && level + 1 < count_,
+                                                        face.chain.lost_non_finite, parallel_));
+        }
+        if (!from_previous) return;
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            faces_[i].above = std::move(made[i]);
+            faces_[i].role.release_source();
+        }
+    }
+
+    std::vector<View<const float>> above() const {
+        std::vector<View<const float>> views;
+        for (const Face& face : faces_) views.push_back(face.above.view());
+        return views;
+    }
+
     const MipOptions& options_;
     Parallel parallel_;
-    int length_;
-    std::vector<RoleLevels> roles_;
-    std::vector<Image<float>> above_;  ///< what the next level is made of
-    std::vector<MipChain> chains_;
+    Size size_;
+    int count_;
+    bool is_cube_;
+    std::vector<Face> faces_;
 };
 
 constexpr int base_block = 256;  // rows at a time where there is nothing but level 0
@@ -141,9 +171,7 @@ struct MipStream::State {
 bool MipStream::is_possible(const MipOptions& options, int channels) {
     const bool is_kernel =
         std::holds_alternative<Auto>(options.filter) || std::holds_alternative<Kernel>(options.filter);
-    const bool stands_alone = options.role != Role::roughness && options.role != Role::alpha_tested &&
-                              !(options.role == Role::normal && channels == 2);
-    return is_kernel && stands_alone && options.from == MipSource::previous;
+    return is_kernel && RoleLevels::goes_by_rows(options.role, channels) && options.from == MipSource::previous;
 }
 
 MipStream::MipStream(int width, int height, int channels, Depth depth, const Encoding& stored,
@@ -224,26 +252,7 @@ MipChain make_mips(const AnyConstView& base, const Encoding& stored, const Texel
                    const MipOptions& options, Parallel parallel) {
     if (MipStream::is_possible(options, shape_of(base).channels))
         return make_by_rows(base, stored, target, options, parallel);
-    const Size size = size_of_view(base);
-    const int count = check_levels(size, options);
-    RoleLevels role(base, stored, target, options, parallel);
-    MipChain chain;
-    chain.images.push_back(role.level_zero(chain.lost_non_finite, parallel));
-    const bool from_previous = options.from == MipSource::previous;
-    Image<float> above;  // the last level, before it was rounded
-    for (int level = 1; level < count; ++level) {
-        const bool from_base = level == 1 || !from_previous;
-        const SourceRows source = from_base ? role.source() : SourceRows{above.view(), 0, role.between()};
-        const Size from = at_level(size, from_base ? 0 : level - 1), to = at_level(size, level);
-        const LevelFilter filter(options.filter, grid_of(from, from), grid_of(to, from), role.channels(),
-                                 edges_of(options));
-        Image<float> floats;
-        chain.images.push_back(role.level(filter, source, floats, from_previous && level + 1 < count, to.width,
-                                          to.height, chain.lost_non_finite, parallel));
-        above = std::move(floats);
-        if (from_previous) role.release_source();
-    }
-    return chain;
+    return std::move(LevelMaker({&base, 1}, stored, target, options, parallel).make().front());
 }
 
 std::vector<MipChain> make_cube_mips(std::span<const AnyConstView> faces, const Encoding& stored,
@@ -258,10 +267,7 @@ std::vector<MipChain> make_cube_mips(std::span<const AnyConstView> faces, const 
             fail("make_cube_mips: faces of ", size.width, " x ", size.height, " and ", other.width, " x ", other.height,
                  "; pass six squares of the same size, depth and channels");
     }
-    const int count = check_levels(size, options);
-    CubeMaker maker(faces, stored, target, options, parallel);
-    for (int level = 1; level < count; ++level) maker.make_level(level);
-    return maker.take();
+    return LevelMaker(faces, stored, target, options, parallel).make();
 }
 
 }  // namespace bandlimit

@@ -1,64 +1,20 @@
 // Mip chains that know what their texels mean.
+// Stability: stable.
 #pragma once
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "bandlimit/core/parallel.h"
 #include "bandlimit/kernel/fetches.h"
 #include "bandlimit/resample/resize.h"
+#include "bandlimit/texture/role.h"
 #include "bandlimit/texture/texture.h"
 
 namespace bandlimit {
-
-/// What the samples of a texture stand for. It decides what their mean is; docs/mips.md has the formulas.
-///
-/// Roles other than color, color_linear and alpha_tested take stored samples as they are: neither their transfer nor
-/// their alpha matters.
-enum class Role {
-    color,         ///< light, in codes as `stored` says, weighted by alpha
-    color_linear,  ///< light in linear codes, whatever `stored` says, weighted by alpha
-    normal,        ///< unit vectors: filtered, then made unit again. Integers hold (n + 1) / 2, floats n itself; two
-                   ///< channels hold x and y, and z >= 0 is what is missing to 1; a fourth is data
-    roughness,     ///< perceptual roughness, the root of alpha; grows by the variance of normals that a level loses.
-                   ///< Each channel by itself, but a fourth, which is data
-    height,        ///< any quantity, each channel by itself
-    mask,          ///< shares of 0 to 1, each channel by itself, clamped to that
-    alpha_tested,  ///< color, whose alpha is compared with a threshold: the share that passes is kept
-    data           ///< any quantity, each channel by itself, alpha too
-};
-std::span<const Role> all_roles();
-/// "color", "color-linear", "alpha-tested", ... Throws Error, listing them, for any other name.
-Role parse_role(std::string_view name);
-std::string_view name_of(Role role);
-
-/// What the name of a file says about its role: "wall_n.png" is a normal map. `because` is the part of the name that
-/// decided, empty where nothing did and the role is color.
-///
-/// The last word decides, after numbers, sizes ("4k"), versions ("v2"), "map", "tex", "texture", "raw" and the
-/// conventions of normals ("gl", "dx", "opengl", "directx"). Words are divided by what is no letter or digit, and by
-/// capitals; case does not matter.
-///
-/// | role | words |
-/// | --- | --- |
-/// | normal | n nrm nor nml norm normal normals ddn |
-/// | roughness | r rgh rough roughness |
-/// | height | h bump height disp displace displacement parallax |
-/// | mask | ao occ occlusion mask metal metallic metalness opacity alpha transparency cavity |
-/// | data | orm arm rma mra mrao rmo (packed side by side) data lut flow id gloss glossiness smoothness; and what
-/// follows
-///          the word metallic or occlusion, as in metallicRoughness |
-/// | color | d diff diffuse albedo alb base basecolor color colour col spec specular emissive emission |
-struct RoleGuess {
-    Role role = Role::color;
-    std::string because;
-};
-RoleGuess guess_role(std::string_view path);
 
 /// Wronski's eight reads that halve (2022, "Fast, GPU friendly, antialiasing downsampling filter"). Between texels of
 /// uneven sizes the offsets of fetches are stretched by the ratio of the pitches to 2.

@@ -1,4 +1,5 @@
 // Normal maps: from codes to vectors, unit length, and how much vectors spread.
+// Stability: inner.
 #pragma once
 #include <optional>
 

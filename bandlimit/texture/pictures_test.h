@@ -4,11 +4,18 @@
 #include <cstdint>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "bandlimit/math/random.h"
 #include "bandlimit/texture/mips.h"
 
 namespace bandlimit {
+
+inline std::vector<Role> all_roles() {
+    std::vector<Role> roles;
+    for (const RoleTraits& traits : role_table()) roles.push_back(traits.role);
+    return roles;
+}
 
 /// An interleaved picture of f(x, y, c).
 template <class T, class F>

@@ -72,65 +72,65 @@ void clamp_samples(const AnyView& view, Parallel parallel) {
     });
 }
 
+/// Whether what is filtered is made of the samples first, as floats: squared widths, and z of normals that lack it.
+bool is_decoded_first(const RoleTraits& role, int channels) {
+    return role.finish == LevelFinish::lost_variance || (role.finish == LevelFinish::unit_length && channels == 2);
+}
+
 }  // namespace
 
 RoleLevels::RoleLevels(const AnyConstView& base, const Encoding& stored, const TexelFormat& target,
                        const MipOptions& options, Parallel parallel)
     : base_(base),
       target_(target),
-      role_(options.role),
+      role_(&traits_of(options.role)),
       base_channels_(shape_of(base).channels),
       alpha_threshold_(options.alpha_threshold) {
     check(stored, options);
-    base_is_grey_alpha_ = base_channels_ == 2 && stored.alpha == 1 && role_ != Role::normal;
-    if (is_light()) stored_ = stored;
-    if (role_ == Role::color_linear) stored_.transfer = Transfer::linear;
+    base_is_grey_alpha_ = base_channels_ == 2 && stored.alpha == 1 && role_->finish != LevelFinish::unit_length;
+    if (role_->is_light) stored_ = stored;
+    if (!role_->may_be_srgb) stored_.transfer = Transfer::linear;
     between_ = {Transfer::linear, stored_.alpha, stored_.alpha >= 0};
     channels_ = base_channels_;
-    if (role_ == Role::roughness || (role_ == Role::normal && base_channels_ == 2)) {
+    if (is_decoded_first(*role_, base_channels_)) {
         decoded_ = source_as_floats(parallel);
         channels_ = decoded_->channels();
     }
-    if (role_ == Role::roughness && options.normals) moments_.emplace(*options.normals, parallel);
+    if (options.normals) moments_.emplace(*options.normals, parallel);
 }
 
 void RoleLevels::check(const Encoding& stored, const MipOptions& options) const {
     const int c = base_channels_, to = target_.channels;
-    const auto role = name_of(role_);
+    const auto [role, name, is_light, may_be_srgb, least, finish] = *role_;
     if (to != 1 && to != 2 && to != 4) fail("make_mips: a target of ", to, " channels; pass 1, 2 or 4");
     if (target_.srgb && target_.depth != Depth::u8)
         fail("make_mips: sRGB codes of ", name_of(target_.depth), "; only u8 has them");
-    if (target_.srgb && role_ != Role::color && role_ != Role::alpha_tested)
-        fail("make_mips: ", role, " in sRGB codes; pass a target with srgb = false, or Role::color");
-    if (target_.premultiplied && (to != 4 || !is_light()))
-        fail("make_mips: ", role, " with ", to, " channels, premultiplied; pass colour with 4 channels, or false");
-    if (is_light() && stored.alpha >= 0 && (stored.alpha != c - 1 || (c != 2 && c != 4)))
+    if (target_.srgb && !may_be_srgb)
+        fail("make_mips: ", name, " in sRGB codes; pass a target with srgb = false, or Role::color");
+    if (target_.premultiplied && (to != 4 || !is_light))
+        fail("make_mips: ", name, " with ", to, " channels, premultiplied; pass colour with 4 channels, or false");
+    if (is_light && stored.alpha >= 0 && (stored.alpha != c - 1 || (c != 2 && c != 4)))
         fail("make_mips: alpha is channel ", stored.alpha, " of ", c, "; pass the last one of 2 or 4, or -1");
-    if (is_light() && stored.alpha >= 0 && to != 4)
-        fail("make_mips: ", role, " with alpha in ", to, " channels; pass a target of 4, or Role::data");
+    if (is_light && stored.alpha >= 0 && to != 4)
+        fail("make_mips: ", name, " with alpha in ", to, " channels; pass a target of 4, or Role::data");
     check_encoding("make_mips", stored, c);
-    if (role_ == Role::alpha_tested && (stored.alpha < 0 || to != 4))
+    if (finish == LevelFinish::coverage && (stored.alpha < 0 || to != 4))
         fail("make_mips: nothing to test without alpha; pass a picture and a target with it, or Role::color");
     if (!(options.alpha_threshold > 0 && options.alpha_threshold <= 1))
         fail("make_mips: alpha_threshold = ", options.alpha_threshold, "; pass one above 0 and up to 1");
-    if (role_ == Role::normal && (c < 2 || c > 4 || to < 2))
-        fail("make_mips: normals of ", c, " channels in ", to, "; pass 2 (x and y), 3 or 4, and a target of 2 or 4");
-    if (role_ != Role::normal && (c < 1 || c > to))
-        fail("make_mips: ", c, " channels do not fit a target of ", to, "; pass fewer, or another target");
+    // Vectors of three channels fit two, which z is left out of.
+    const int most = finish == LevelFinish::unit_length ? 4 : to;
+    if (c < least || c > most || to < least)
+        fail("make_mips: ", name, " of ", c, " channels in ", to, "; pass ", least, " to ", most,
+             ", or another target");
     if (!options.normals) return;
-    if (role_ != Role::roughness) fail("make_mips: normals for ", role, "; only roughness takes them");
+    if (finish != LevelFinish::lost_variance) fail("make_mips: normals for ", name, "; only roughness takes them");
     const ViewShape normals = shape_of(*options.normals);
     if (normals.width < 1 || normals.height < 1 || normals.channels < 2 || normals.channels > 4)
         fail("make_mips: normals of ", normals.width, " x ", normals.height, " with ", normals.channels,
              " channels; pass at least 1 x 1 with 2 to 4");
 }
 
-bool RoleLevels::is_light() const {
-    return role_ == Role::color || role_ == Role::color_linear || role_ == Role::alpha_tested;
-}
-bool RoleLevels::needs_finish() const {
-    return role_ == Role::normal || role_ == Role::roughness || role_ == Role::alpha_tested;
-}
 bool RoleLevels::has_own_alpha() const { return base_channels_ == 4 || base_is_grey_alpha_; }
 
 SourceRows RoleLevels::source() const {
@@ -139,14 +139,14 @@ SourceRows RoleLevels::source() const {
 }
 
 Image<float> RoleLevels::floats_of(const AnyConstView& rows, Parallel parallel) const {
-    if (role_ == Role::normal && base_channels_ == 2) return decode_normals(rows, false, parallel);
+    if (role_->finish == LevelFinish::unit_length && base_channels_ == 2) return decode_normals(rows, false, parallel);
     const ViewShape shape = shape_of(rows);
     Image<float> floats(shape.width, shape.height, shape.channels, Layout::interleaved);
     const int filtered = shape.channels, rough = has_own_alpha() ? filtered - 1 : filtered;
     any_row(shape.height, 0, parallel, [&](int y, std::span<float>) {
         const std::span<float> row{&floats.view()(0, y), row_length(shape)};
         decode_row(rows, y, stored_, true, row);
-        if (role_ == Role::roughness)
+        if (role_->finish == LevelFinish::lost_variance)
             for (std::size_t i = 0; i < row.size(); ++i)
                 if (static_cast<int>(i) % filtered < rough) row[i] = roughness_variance(row[i]);
         return false;
@@ -178,8 +178,9 @@ Encoding RoleLevels::target_encoding() const {
 
 /// Fills the channels that are not filtered.
 void RoleLevels::complete(const AnyView& image, Parallel parallel) const {
-    if (role_ == Role::normal) return;
-    if (role_ == Role::mask && !is_integer(target_.depth)) clamp_samples(filtered_part(image), parallel);
+    if (role_->finish == LevelFinish::unit_length) return;
+    if (role_->finish == LevelFinish::clamp && !is_integer(target_.depth))
+        clamp_samples(filtered_part(image), parallel);
     const bool is_grey = base_channels_ == 1 || base_is_grey_alpha_;
     if (target_.channels == base_channels_) return;
     std::visit(
@@ -207,7 +208,7 @@ bool RoleLevels::store_base_rows(const AnyConstView& rows, const AnyView& target
                          stored_.transfer == to.transfer && (to.alpha < 0 || stored_.associated == to.associated);
     bool lost = false;
     if (is_same) copy_samples(rows, target, parallel);
-    else if (role_ == Role::normal) {
+    else if (role_->finish == LevelFinish::unit_length) {
         // Two channels are decoded to vectors already; others are read as they are.
         const Image<float> samples = floats_of(rows, parallel);
         return encode_normals({samples.view(), are_codes_of_normals()}, target, parallel);
@@ -226,34 +227,52 @@ AnyImage RoleLevels::level_zero(bool& lost, Parallel parallel) {
     const ViewShape shape = shape_of(base_);
     AnyImage image = make_image(target_.depth, shape.width, shape.height, target_.channels);
     lost |= store_base_rows(base_, view_of(image), parallel);
-    if (role_ == Role::alpha_tested) {
+    if (role_->finish == LevelFinish::coverage) {
         const double passing = static_cast<double>(count_passing(const_view(view_of(image)), 3, alpha_threshold_));
         share_ = passing / (static_cast<double>(shape.width) * shape.height);
     }
     return image;
 }
 
-bool RoleLevels::store_rows(View<const float> floats, const AnyView& target, Parallel parallel) const {
-    if (role_ == Role::normal) return encode_normals({floats, are_codes_of_normals()}, target, parallel);
+AnyImage RoleLevels::level(const RowFilter& filter, const SourceRows& from, Image<float>& floats, bool keep_floats,
+                           bool& lost, Parallel parallel) {
+    const int width = filter.protocol().width, height = filter.protocol().height;
+    AnyImage image = make_image(target_.depth, width, height, target_.channels);
+    const bool is_mean = role_->finish == LevelFinish::none || role_->finish == LevelFinish::clamp;
+    if (is_mean && !keep_floats) {
+        lost |= filter.run(from, {filtered_part(view_of(image)), 0, target_encoding(), {}}, parallel).lost_non_finite;
+        complete(view_of(image), parallel);
+        return image;
+    }
+    floats = Image<float>(width, height, channels_, Layout::interleaved);
+    filter.run(from, {floats.view(), 0, between_, {}}, parallel);
+    lost |= store_rows(floats.view(), view_of(image), parallel);
+    return image;
+}
+
+bool RoleLevels::goes_by_rows(Role role, int channels) {
+    return traits_of(role).finishes_by_rows() && !is_decoded_first(traits_of(role), channels);
+}
+
+bool RoleLevels::store_rows(View<const float> floats, const AnyView& target, Parallel parallel) {
+    if (role_->finish == LevelFinish::unit_length)
+        return encode_normals({floats, are_codes_of_normals()}, target, parallel);
     const AnyView part = filtered_part(target);
+    const bool lost = role_->finish == LevelFinish::lost_variance ? store_roughness(floats, part, parallel)
+                      : role_->finish == LevelFinish::coverage    ? store_with_coverage(floats, part, parallel)
+                                                                  : store_means(floats, part, parallel);
+    complete(target, parallel);
+    return lost;
+}
+
+bool RoleLevels::store_means(View<const float> floats, const AnyView& target, Parallel parallel) const {
     const auto samples = static_cast<std::size_t>(floats.width) * static_cast<std::size_t>(floats.channels);
-    const bool lost = any_row(floats.height, 0, parallel, [&](int y, std::span<float>) {
-        return encode_row({&floats(0, y), samples}, between_.associated, part, y, target_encoding());
+    return any_row(floats.height, 0, parallel, [&](int y, std::span<float>) {
+        return encode_row({&floats(0, y), samples}, between_.associated, target, y, target_encoding());
     });
-    complete(target, parallel);
-    return lost;
 }
 
-bool RoleLevels::finish(View<const float> floats, const AnyView& target, Parallel parallel) {
-    if (role_ != Role::roughness && role_ != Role::alpha_tested) return store_rows(floats, target, parallel);
-    const AnyView part = filtered_part(target);
-    const bool lost =
-        role_ == Role::roughness ? finish_roughness(floats, part, parallel) : finish_coverage(floats, part, parallel);
-    complete(target, parallel);
-    return lost;
-}
-
-bool RoleLevels::finish_roughness(View<const float> floats, const AnyView& target, Parallel parallel) {
+bool RoleLevels::store_roughness(View<const float> floats, const AnyView& target, Parallel parallel) {
     std::optional<View<const float>> means;
     if (moments_) means = moments_->means(floats.width, floats.height, parallel);
     const auto step = static_cast<std::size_t>(channels_), rough = has_own_alpha() ? step - 1 : step;
@@ -272,7 +291,7 @@ bool RoleLevels::finish_roughness(View<const float> floats, const AnyView& targe
     });
 }
 
-bool RoleLevels::finish_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const {
+bool RoleLevels::store_with_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const {
     const auto step = static_cast<std::size_t>(channels_), width = static_cast<std::size_t>(floats.width);
     const int alpha = between_.alpha;
     std::vector<float> alphas;

@@ -1,4 +1,5 @@
 // What a role does to texels before they are filtered, and to levels once they are.
+// Stability: inner.
 #pragma once
 #include <optional>
 #include <span>
@@ -35,47 +36,33 @@ public:
     AnyImage level_zero(bool& lost, Parallel parallel);
 
     /// A level made by filter.run(), and its floats, if they are wanted or needed.
-    template <class Filter>
-    AnyImage level(const Filter& filter, const SourceRows& from, Image<float>& floats, bool keep_floats, int width,
-                   int height, bool& lost, Parallel parallel) {
-        AnyImage image = make_image(target_.depth, width, height, target_.channels);
-        if (keep_floats || needs_finish()) {
-            floats = Image<float>(width, height, channels_, Layout::interleaved);
-            filter.run(from, {floats.view(), 0, between_, {}}, parallel);
-            lost |= finish(floats.view(), view_of(image), parallel);
-        } else {
-            lost |= filter.run(from, {filtered_part(view_of(image)), 0, target_encoding(), {}}, parallel);
-            complete(view_of(image), parallel);
-        }
-        return image;
-    }
+    AnyImage level(const RowFilter& filter, const SourceRows& from, Image<float>& floats, bool keep_floats, bool& lost,
+                   Parallel parallel);
 
-    /// Whether rows of a level are finished without the others, and level 0 is read as it is stored.
-    bool goes_by_rows() const { return role_ != Role::roughness && role_ != Role::alpha_tested && !decoded_; }
+    /// Whether rows of a level of so many channels are finished without the others, and level 0 is read as it is stored.
+    static bool goes_by_rows(Role role, int channels);
     /// Rows of level 0 in the target's format.
     bool store_base_rows(const AnyConstView& rows, const AnyView& target, Parallel parallel) const;
-    /// Rows of another level, of floats as they are between levels. Both return whether a value that is not finite was
-    /// stored as the code 0.
-    bool store_rows(View<const float> floats, const AnyView& target, Parallel parallel) const;
+    /// Rows of another level, of floats as they are between levels: all of them, unless it goes by rows. Both return
+    /// whether a value that is not finite was stored as the code 0.
+    bool store_rows(View<const float> floats, const AnyView& target, Parallel parallel);
 
 private:
-    bool is_light() const;
-    bool needs_finish() const;
     bool has_own_alpha() const;  ///< whether the last channel of the base is alpha, or data in its place
     bool are_codes_of_normals() const;
     AnyView filtered_part(const AnyView& image) const;
     Encoding target_encoding() const;
     Image<float> floats_of(const AnyConstView& rows, Parallel parallel) const;
     void complete(const AnyView& image, Parallel parallel) const;
-    bool finish(View<const float> floats, const AnyView& target, Parallel parallel);
-    bool finish_roughness(View<const float> floats, const AnyView& target, Parallel parallel);
-    bool finish_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const;
+    bool store_means(View<const float> floats, const AnyView& target, Parallel parallel) const;
+    bool store_roughness(View<const float> floats, const AnyView& target, Parallel parallel);
+    bool store_with_coverage(View<const float> floats, const AnyView& target, Parallel parallel) const;
     void check(const Encoding& stored, const MipOptions& options) const;
 
     AnyConstView base_;
     Encoding stored_, between_;
     TexelFormat target_;
-    Role role_;
+    const RoleTraits* role_;
     int base_channels_ = 0, channels_ = 0;
     bool base_is_grey_alpha_ = false;
     double alpha_threshold_, share_ = 0;  ///< of texels that pass in level 0

@@ -1,4 +1,5 @@
 // Roughness maps: what may be averaged of them, and what lost normals add.
+// Stability: inner.
 #pragma once
 #include <optional>
 #include <span>

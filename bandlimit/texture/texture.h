@@ -1,4 +1,5 @@
 // A texture in memory: levels, layers and faces, as graphics interfaces know them.
+// Stability: stable.
 #pragma once
 #include <cstddef>
 #include <cstdint>

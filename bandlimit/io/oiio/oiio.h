@@ -1,4 +1,5 @@
 // What the files of this folder share. Not for callers: only they include OpenImageIO.
+// Stability: inner.
 #pragma once
 #include <OpenImageIO/imageio.h>
 

@@ -1,0 +1,209 @@
+// bandlimit temporal: antialiasing and upscaling over time.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+#include "apps/console/common.h"
+#include "apps/page/page.h"
+#include "apps/page/plot.h"
+#include "bandlimit/io/atomic_file.h"
+#include "bandlimit/job/command.h"
+#include "bandlimit/job/pictures.h"
+#include "bandlimit/job/temporal.h"
+#include "bandlimit/scene/scene.h"
+
+namespace bandlimit::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+    job::TemporalJob job;
+    std::string size, report, units, direction, y_axis, jitter = "halton";
+    Parallel parallel;
+    bool json = false;
+};
+
+template <class Value>
+Value one_of(const std::string& option, const std::string& text,
+             const std::vector<std::pair<std::string, Value>>& all) {
+    std::string list;
+    for (const auto& [name, value] : all) {
+        if (name == text) return value;
+        list += (list.empty() ? "" : ", ") + name;
+    }
+    throw UsageError(fmt::format("{}: \"{}\" is unknown; choose one of: {}", option, text, list));
+}
+
+job::TemporalJob job_of(const Options& o) {
+    using Units = job::MotionConvention::Units;
+    job::TemporalJob job = o.job;
+    job.options = temporal_preset(job.preset);
+    job.jitter = parse_jitter(o.jitter);
+    job.measures = !o.report.empty();
+    if (!o.size.empty()) {
+        const Size size = parse_size("--size", o.size);
+        job.width = size.width, job.height = size.height;
+    }
+    if (!o.units.empty())
+        job.sequence.motion_units = one_of<Units>("--motion-units", o.units,
+                                                  {{"pixels", Units::pixels}, {"uv", Units::uv}, {"ndc", Units::ndc}});
+    if (!o.direction.empty())
+        job.sequence.is_previous_minus_current =
+            one_of<bool>("--motion-direction", o.direction, {{"previous-current", true}, {"current-previous", false}});
+    if (!o.y_axis.empty()) job.sequence.is_y_up = one_of<bool>("--motion-y", o.y_axis, {{"up", true}, {"down", false}});
+    return job;
+}
+
+void check(const Options& o) {
+    const job::TemporalJob job = job_of(o);
+    const std::vector<std::string_view> conventions = job::convention_names();
+    if (std::find(conventions.begin(), conventions.end(), job.sequence.conventions) == conventions.end())
+        throw UsageError(fmt::format("--conventions: \"{}\" is unknown; choose one of: {}", job.sequence.conventions,
+                                     fmt::join(conventions, ", ")));
+    if (job.width > 0 && !is_scene(job.input))
+        throw UsageError("--size: a folder of frames has a size of its own; leave it out, or name a scene");
+    job::check(job);
+    if (o.report.empty()) return;
+    // The report may lie in the folder of the frames, which is made once these are known to be readable.
+    namespace fs = std::filesystem;
+    const auto full = [](const std::string& path) { return fs::weakly_canonical(fs::absolute(path)); };
+    const fs::path parent = full(o.report).parent_path();
+    if (!fs::is_directory(parent) && parent != full(job.out))
+        throw UsageError(fmt::format("--report: {} is not a folder; make it first", parent.string()));
+}
+
+ordered_json number_or_null(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? ordered_json(*value) : ordered_json();
+}
+
+ordered_json json_of(const Options& o, const job::TemporalJob& job, const job::TemporalReport& r) {
+    ordered_json frames = ordered_json::array();
+    for (const job::TemporalFrameReport& f : r.frames)
+        frames.push_back({{"frame", f.number},
+                          {"file", f.file},
+                          {"psnr", number_or_null(f.psnr)},
+                          {"ssim", number_or_null(f.ssim)},
+                          {"ms", f.ms}});
+    return {{"input", job.input},
+            {"output", job.out},
+            {"preset", job.preset},
+            {"scale", job.scale},
+            {"width", r.width},
+            {"height", r.height},
+            {"conventions", r.conventions},
+            {"jitter_length", r.jitter_length},
+            {"mip_bias", r.mip_bias},
+            {"threads", o.parallel.count()},
+            {"seconds", r.seconds},
+            {"frames", frames}};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    AtomicFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+}
+
+/// The page beside report.json: the curve, the numbers, and the last frame.
+void write_page(const std::string& folder, const job::TemporalJob& job, const job::TemporalReport& r) {
+    Page page("bandlimit temporal",
+              fmt::format("{}, {} frames, {} x {} to {} x {}, preset {}.", job.input, r.frames.size(), r.in_width,
+                          r.in_height, r.width, r.height, job.preset));
+    page.section("Convergence", "PSNR to the truth in linear light, clamped to [0, 1], frame by frame.", {});
+    Series psnr{job.preset, {}, {}};
+    std::vector<std::vector<std::string>> rows{{"frame", "PSNR in dB", "SSIM", "ms"}};
+    for (const job::TemporalFrameReport& f : r.frames) {
+        if (f.psnr) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
+        rows.push_back({f.file, f.psnr ? fmt::format("{:.2f}", *f.psnr) : "-",
+                        f.ssim ? fmt::format("{:.4f}", *f.ssim) : "-", fmt::format("{:.1f}", f.ms)});
+    }
+    if (!psnr.x.empty()) {
+        draw({{"Distance to the truth", "frame", "PSNR in dB", {psnr}}}, folder + "/psnr.svg", 640, 400);
+        page.figure("psnr.svg", "Higher is nearer to the truth.", "", 640);
+    }
+    const std::string last = (std::filesystem::path(job.out) / r.frames.back().file).string();
+    job::write_picture(folder + "/last.png", job::read_picture(last).view());
+    page.figure("last.png", "The last frame.", "", r.width);
+    page.table(rows, "All frames.", "");
+    write_text(folder + "/index.html", page.html());
+}
+
+void run(const Options& o, Console& console) {
+    const job::TemporalJob job = job_of(o);
+    const job::TemporalReport report = job::temporal(job, context_of(console, o.parallel));
+    const std::string folder = o.report.empty() ? "" : job::made_folder(o.report);
+    const ordered_json json = json_of(o, job, report);
+    if (!folder.empty()) {
+        write_text(folder + "/report.json", json.dump(2) + "\n");
+        write_page(folder, job, report);
+    }
+    if (o.json) return console.print_json(json);
+    console.print("temporal: {} frames, {} x {} to {} x {}, {} conventions, preset {}\n", report.frames.size(),
+                  report.in_width, report.in_height, report.width, report.height, report.conventions, job.preset);
+    console.print("  mip bias  {:.2f}: what textures should be sampled with\n", report.mip_bias);
+    const job::TemporalFrameReport& last = report.frames.back();
+    if (last.psnr) console.print("  truth     PSNR {:.2f} dB, SSIM {:.4f} at {}\n", *last.psnr, *last.ssim, last.file);
+    double ms = 0;
+    for (const job::TemporalFrameReport& f : report.frames) ms += f.ms / double(report.frames.size());
+    console.print("  time      {:.1f} ms a frame\n", ms);
+    if (!folder.empty()) console.print("  report    {}/index.html\n", folder);
+}
+
+}  // namespace
+
+void add_temporal(Program& program) {
+    auto o = std::make_shared<Options>();
+    Verb verb = program.add_verb(
+        "temporal", "Antialias and upscale over time: accumulate jittered frames, with the sum of their weights",
+        "bandlimit temporal glyphs smooth --size 48x32 --scale 2 --report smooth/report\n"
+        "Others:\n"
+        "  bandlimit temporal render smooth --meta render/meta.json --reference truth --report report");
+    verb.add_option("INPUT", o->job.input,
+                    "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)")
+        .required();
+    verb.add_option("OUTDIR", o->job.out, "Folder for the frames, which are named like the input's").required();
+    verb.add_option("--size", o->size, "Size of the input, for scenes").type_name("WxH");
+    verb.add_option_function<std::string>(
+            "--scale", [o](const std::string& s) { o->job.scale = parse_number("--scale", s); },
+            "Size of the output as a multiple of the input's, 1 (default) to 4")
+        .type_name("S");
+    verb.add_option("--preset", o->job.preset,
+                    "balanced (default), fast, sharp; reference: supersampling over time, without rejection;\n"
+                    "per-frame and input-sized: the plain rules, to compare with")
+        .type_name("P");
+    verb.add_option("--frames", o->job.frames, "How many frames; default all, of scenes a period of the jitter")
+        .type_name("N");
+    verb.add_option("--jitter", o->jitter, "Jitter of scenes: halton (default), r2, rotated or sobol").type_name("J");
+    verb.add_option("--meta", o->job.sequence.meta,
+                    "JSON file with the jitter of each frame and, for the motion of the sky, the cameras")
+        .type_name("FILE");
+    verb.add_option("--conventions", o->job.sequence.conventions,
+                    "What motion vectors mean: blender, unreal, unity or bandlimit; auto (default): by channel names")
+        .type_name("C");
+    verb.add_option("--color", o->job.sequence.color, "Channels of the colour, as Beauty for Beauty.R and so on")
+        .type_name("NAME");
+    verb.add_option("--depth", o->job.sequence.depth, "Channel of the linear depth").type_name("NAME");
+    verb.add_option("--motion", o->job.sequence.motion, "Channels of the motion, as Vector for Vector.X and Vector.Y")
+        .type_name("NAME");
+    verb.add_option("--motion-units", o->units, "Overrides the conventions").type_name("pixels|uv|ndc");
+    verb.add_option("--motion-direction", o->direction, "Overrides the conventions")
+        .type_name("previous-current|current-previous");
+    verb.add_option("--motion-y", o->y_axis, "Overrides the conventions").type_name("up|down");
+    verb.add_option("--reference", o->job.reference,
+                    "Folder with the truth for each frame, of the output's size, paired by the number in its name")
+        .type_name("DIR");
+    verb.add_option("--report", o->report, "Write report.json and a page with PSNR and SSIM over time to this folder")
+        .type_name("DIR");
+    add_threads(verb, o->parallel);
+    add_json(verb, o->json);
+    program.add_quiet(verb);
+    program.on(
+        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
+}
+
+}  // namespace bandlimit::app

@@ -1,0 +1,119 @@
+// What the program makes of sequences of frames.
+#include <fstream>
+
+#include "apps/run_program_test.h"
+#include "bandlimit/job/pictures.h"
+
+namespace bandlimit {
+namespace {
+
+using nlohmann::json;
+
+/// Twelve frames of a scene in a folder, with their jitter in meta.json.
+void add_sequence(const Shell& shell, const std::string& scene, const std::string& folder, int frames = 12) {
+    std::filesystem::create_directory(shell / folder);
+    json jitter = json::array();
+    for (int f = 0; f < frames; ++f) {
+        const double x = (f * 5 % 12 - 5.5) / 12, y = (f * 7 % 12 - 5.5) / 12;
+        jitter.push_back({x, y});
+        ASSERT_TRUE(succeeds(shell("pattern " + scene + " " + folder + "/f_" + std::to_string(100 + f) +
+                                   ".exr --size 32x24 --frame " + std::to_string(f) + " --spp 1 --jitter " +
+                                   std::to_string(x) + "," + std::to_string(y))));
+    }
+    std::ofstream(shell / "meta.json") << json{{"sequences", {{folder, {{"jitter", jitter}}}}}}.dump();
+}
+
+TEST(TemporalVerb, UpscalesASceneTowardsItsTruth) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome run =
+        shell("temporal glyphs out --size 32x24 --scale 2 --preset reference --report out/report --json");
+    ASSERT_TRUE(succeeds(run));
+    const json report = run.json();
+    EXPECT_EQ(report, json::parse(bytes_of(shell / "out/report/report.json")));
+    EXPECT_EQ(report["width"], 64);
+    EXPECT_EQ(report["jitter_length"], 32);
+    EXPECT_EQ(report["mip_bias"], -1);
+    ASSERT_EQ(report["frames"].size(), 32u);
+    EXPECT_EQ(report["frames"][31]["frame"], 31);
+    EXPECT_GT(report["frames"][31]["psnr"].get<double>(), report["frames"][0]["psnr"].get<double>() + 6);
+    EXPECT_GT(report["frames"][31]["ssim"].get<double>(), 0.9);
+    EXPECT_NE(bytes_of(shell / "out/report/index.html").find("psnr.svg"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(shell / "out/frame_031.exr"));
+}
+
+// After a period, what is still is what the samples of all frames add up to: supersampling with that kernel.
+TEST(TemporalVerb, ReadsASequenceAndItsReference) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "fence", "in");
+    ASSERT_TRUE(succeeds(shell("temporal in one --meta meta.json --preset reference")));
+    const Outcome run = shell("temporal in two --meta meta.json --preset reference --reference one --report r --json");
+    ASSERT_TRUE(succeeds(run));
+    const json report = run.json();
+    EXPECT_EQ(report["conventions"], "bandlimit");
+    for (const json& frame : report["frames"]) {
+        EXPECT_TRUE(frame["psnr"].is_null()) << "the same bits are infinitely near";
+        EXPECT_EQ(frame["ssim"], 1);
+    }
+    EXPECT_EQ(report["frames"][3]["frame"], 103);
+    EXPECT_EQ(bytes_of(shell / "one/f_111.exr"), bytes_of(shell / "two/f_111.exr"));
+}
+
+// A sign that is wrong sends history the wrong way.
+TEST(TemporalVerb, MotionHasADirection) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "mover", "in", 6);
+    const auto last = [&](const std::string& flags) {
+        EXPECT_TRUE(succeeds(shell("temporal in out --meta meta.json --preset reference " + flags)));
+        return job::read_picture(shell / "out/f_105.exr");
+    };
+    std::filesystem::create_directory(shell / "truth");
+    ASSERT_TRUE(succeeds(
+        shell("supersample mover truth/f_105.exr --size 32x24 --frame 5 --pattern regular:64 --kernel lanczos2")));
+    const Image<float> truth = job::read_picture(shell / "truth/f_105.exr");
+    const auto error = [&](const Image<float>& found) {
+        double sum = 0;
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 32; ++x) sum += std::abs(double(found.view()(x, y) - truth.view()(x, y)));
+        return sum;
+    };
+    EXPECT_LT(error(last("")), error(last("--motion-direction current-previous")));
+}
+
+TEST(TemporalVerb, RefusesWhatDoesNotFit) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "edge", "in", 3);
+    struct Case {
+        int code;
+        std::string line, word;
+    };
+    std::ofstream(shell / "broken.json") << "{\"sequences\": ";
+    std::ofstream(shell / "other.json") << "{\"sequences\": {\"elsewhere\": {}}}";
+    std::ofstream(shell / "far.json") << "{\"sequences\": {\"in\": {\"jitter\": [[40, 0]]}}}";
+    std::filesystem::create_directory(shell / "empty");
+    for (const Case& c : {
+             Case{2, "temporal in", "OUTDIR"},
+             {2, "temporal in out --scale 5", "--scale: "},
+             {2, "temporal in out --scale nan", "--scale"},
+             {2, "temporal in out --preset ultra", "balanced"},
+             {2, "temporal in out --conventions maya", "blender"},
+             {2, "temporal in out --motion-units inches", "pixels"},
+             {2, "temporal in out --size 8x8", "--size"},
+             {2, "temporal mover out", "--size"},
+             {2, "temporal in out --report no/where", "--report"},
+             {1, "temporal none out", "not a folder"},
+             {1, "temporal empty out", "no EXR files"},
+             {1, "temporal in out --meta broken.json", "not JSON"},
+             {1, "temporal in out --meta other.json", "\"in\""},
+             {1, "temporal in out --meta far.json", "line 1: \"jitter\""},
+             {1, "temporal in out --color Beauty", "Beauty"},
+             {1, "temporal in out --reference empty", "no reference"},
+         })
+        EXPECT_TRUE(fails(c.code, shell(c.line), c.word)) << c.line;
+    std::filesystem::remove(shell / "in/f_101.exr");
+    EXPECT_TRUE(fails(1, shell("temporal in out"), "frame 101 is missing"));
+    ASSERT_TRUE(succeeds(shell("pattern edge in/f_101.exr --size 33x24 --spp 1")));
+    EXPECT_TRUE(fails(1, shell("temporal in out"), "one size"));
+}
+
+}  // namespace
+}  // namespace bandlimit
