@@ -92,9 +92,8 @@ void check_conventions(const std::string& folder, job::SequenceJob sequence, con
     if (report.verdict == Verdict::right) return;
     console.finish();
     if (report.verdict == Verdict::wrong)
-        throw std::runtime_error(
-            fmt::format("{}: is read wrongly; pass {}", folder, fmt::join(report.flags, " ")));
-    throw std::runtime_error(fmt::format("{}: {}: cannot tell; check a sequence in which camera or things move",
+        throw std::runtime_error(fmt::format("{}: is read wrongly; pass {}", folder, fmt::join(report.flags, " ")));
+    throw std::runtime_error(fmt::format("{}: {}: cannot tell; check frames in which the camera or more things move",
                                          folder, report.reason));
 }
 

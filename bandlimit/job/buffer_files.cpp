@@ -44,14 +44,11 @@ int FilePattern::number_of(const std::string& file_name) const {
 }
 
 bool is_file_pattern(const std::string& text) {
-    return text.find('#') != std::string::npos ||
-           std::string_view(text).substr(0, end_of_file(text)).ends_with(".exr");
+    return text.find('#') != std::string::npos || std::string_view(text).substr(0, end_of_file(text)).ends_with(".exr");
 }
 
 FilePattern parse_file_pattern(const std::string& option, const std::string& text) {
-    const auto fail = [&](const std::string& what) {
-        throw OptionError(option, fmt::format("\"{}\" {}", text, what));
-    };
+    const auto fail = [&](const std::string& what) { throw OptionError(option, fmt::format("\"{}\" {}", text, what)); };
     const std::size_t end = end_of_file(text);
     const fs::path path = text.substr(0, end);
     const std::string name = path.filename().string();

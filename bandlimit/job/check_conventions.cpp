@@ -7,51 +7,62 @@
 #include <stdexcept>
 
 #include "bandlimit/antialias/history_sampler.h"
+#include "bandlimit/resample/apply.h"
+#include "bandlimit/resample/bank.h"
 
 namespace bandlimit::job {
 namespace {
 
 using Units = MotionConvention::Units;
 using JitterSign = MotionConvention::JitterSign;
+using Verdict = ConventionReport::Verdict;
 
 constexpr int most_frames = 6, most_sites = 32768, parts_x = 16, parts_y = 9;
-constexpr double standard_errors = 3;      // by which a reading has to be worse to be taken for wrong
-constexpr float depth_tolerance = 0.1f;    // relative: other depths are of something else
-constexpr double least_motion = 0.05;      // pixels; less is rounding
-constexpr double unsteady_enough = 0.02;   // pixels, of motion that may as well be steady
+constexpr double standard_errors = 3;    // by which a reading has to be worse to be taken for wrong
+constexpr double error_of_depth = 0.2;   // where the frame before has another depth; a colour's is 0.02 to 0.1
+constexpr float depth_tolerance = 0.1f;  // relative: other depths are of something else
+constexpr double least_motion = 0.05;    // pixels; less is rounding
+constexpr double most_unsteady = 0.02;   // pixels, of motion that may as well be steady
 
 Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
 Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 
-/// v / (1 + v), so that a highlight weighs no more than anything else; 0 for what is not finite.
-Image<float> compressed(View<const float> color) {
-    Image<float> result(color.width, color.height, 3, Layout::interleaved);
+/// v / (1 + v), so that a highlight weighs no more than anything else, 0 for what is not finite; smoothed by 1/4 1/2 1/4
+/// along x and y, since what aliases is not found again in the frame before.
+Image<float> prepared(View<const float> color) {
+    Image<float> picture(color.width, color.height, 3, Layout::interleaved);
     for (int y = 0; y < color.height; ++y)
         for (int x = 0; x < color.width; ++x)
             for (int c = 0; c < 3; ++c) {
                 const float v = std::max(0.0f, color(x, y, c));
-                result.view()(x, y, c) = std::isfinite(v) ? v / (1 + v) : 0;
+                picture.view()(x, y, c) = std::isfinite(v) ? v / (1 + v) : 0;
             }
-    return result;
+    const Taps taps{-1, {0.25, 0.5, 0.25}};
+    Image<float> rows(color.width, color.height, 3, Layout::interleaved);
+    apply(make_bank(taps, color.width, Edge::clamp), picture.view(), rows.view());
+    apply(make_bank(taps, color.height, Edge::clamp), transposed(View<const float>(rows.view())),
+          transposed(picture.view()));
+    return picture;
 }
 
-/// What `picture` shows at (x, y), where samples are at whole numbers, smoothed by a B-spline: at places between samples
-/// about as much as at samples.
-std::array<float, 3> smoothed(View<const float> picture, float x, float y) {
+/// What `picture` shows at (x, y), where samples are at whole numbers, through a B-spline: it smooths as much between
+/// samples as at them, so that no way is at an advantage.
+std::array<float, 3> shown_at(View<const float> picture, float x, float y) {
     x = std::clamp(x, 0.0f, static_cast<float>(picture.width - 1));
     y = std::clamp(y, 0.0f, static_cast<float>(picture.height - 1));
-    const float left = std::floor(x), top = std::floor(y);
+    const int left = static_cast<int>(x), top = static_cast<int>(y);
     float weights_x[4], weights_y[4];
-    history_weights(HistoryKernel::bspline, x - left, weights_x);
-    history_weights(HistoryKernel::bspline, y - top, weights_y);
+    history_weights(HistoryKernel::bspline, x - static_cast<float>(left), weights_x);
+    history_weights(HistoryKernel::bspline, y - static_cast<float>(top), weights_y);
     std::array<float, 3> sum{};
-    for (int j = 0; j < 4; ++j)
+    for (int j = 0; j < 4; ++j) {
+        const int v = std::clamp(top + j - 1, 0, picture.height - 1);
         for (int i = 0; i < 4; ++i) {
-            const int u = std::clamp(static_cast<int>(left) + i - 1, 0, picture.width - 1);
-            const int v = std::clamp(static_cast<int>(top) + j - 1, 0, picture.height - 1);
-            for (int c = 0; c < 3; ++c)
-                sum[static_cast<std::size_t>(c)] += weights_x[i] * weights_y[j] * picture(u, v, c);
+            const float* const sample = &picture(std::clamp(left + i - 1, 0, picture.width - 1), v);
+            const float weight = weights_x[i] * weights_y[j];
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * sample[c];
         }
+    }
     return sum;
 }
 
@@ -65,7 +76,7 @@ struct Site {
 
 /// A frame and the one before it.
 struct Pair {
-    View<const float> previous, previous_depth;  ///< compressed colour; an empty view where there is no depth
+    View<const float> previous, previous_depth;  ///< prepared() colour; an empty view where there is no depth
     std::vector<Site> sites;
     Point jitter_step;  ///< stored jitter of the frame minus that of the one before
 };
@@ -81,7 +92,7 @@ std::vector<Site> sites_of(const SequenceFrame& frame, View<const float> color) 
             site.stored = {double(frame.motion.view()(x, y, 0)), double(frame.motion.view()(x, y, 1))};
             if (has_depth) site.depth = frame.depth.view()(x, y);
             if (is_sky(site.depth) || !std::isfinite(site.stored.x + site.stored.y)) continue;
-            site.color = smoothed(color, static_cast<float>(x), static_cast<float>(y));
+            site.color = shown_at(color, static_cast<float>(x), static_cast<float>(y));
             sites.push_back(site);
         }
     return sites;
@@ -98,8 +109,8 @@ bool is_of_other_depth(const Pair& pair, const Site& site, float x, float y) {
 /// How far a site is from what the frame before shows where it is moved by (dx, dy).
 double error_of(const Pair& pair, const Site& site, Point moved) {
     const float x = static_cast<float>(site.x + moved.x), y = static_cast<float>(site.y + moved.y);
-    if (is_of_other_depth(pair, site, x, y)) return 1;
-    const std::array<float, 3> there = smoothed(pair.previous, x, y);
+    if (is_of_other_depth(pair, site, x, y)) return error_of_depth;
+    const std::array<float, 3> there = shown_at(pair.previous, x, y);
     double sum = 0;
     for (std::size_t c = 0; c < 3; ++c) sum += std::abs(double(there[c]) - double(site.color[c]));
     return sum / 3;
@@ -136,8 +147,8 @@ std::vector<MotionConvention> readings(const MotionConvention& current, bool has
 
 /// One way to get from pixels to those of the frame before.
 struct Way {
-    MotionConvention convention;  ///< the simplest reading that goes it
-    bool is_still = false;        ///< all vectors count as 0
+    MotionConvention convention;    ///< the simplest reading that goes it
+    bool is_still = false;          ///< all vectors count as 0
     std::vector<double> sums = {};  ///< of the errors in each part of each pair
 
     double error_over(double sites) const { return std::accumulate(sums.begin(), sums.end(), 0.0) / sites; }
@@ -181,8 +192,8 @@ struct Comparison {
     std::vector<Way> ways;
     double sites = 0;
     int pairs = 0;
-    double largest_motion = 0;                ///< pixels, in the units that make the most of it
-    std::vector<Point> turns, jitter_turns;   ///< by how much the middle stored vector changes, and the jitter's step
+    double largest_motion = 0;               ///< pixels, in the units that make the most of it
+    std::vector<Point> turns, jitter_turns;  ///< by how much the middle stored vector changes, and the jitter's step
 };
 
 void add_errors(std::vector<Way>& ways, const Pair& pair, const Context& context) {
@@ -222,11 +233,11 @@ Comparison compared(const StoredFrames& frames, const std::vector<MotionConventi
     result.ways = ways_of(all);
     const int count = std::min(frames.count, most_frames), first = (frames.count - count) / 2;
     SequenceFrame before = frames.read(first);
-    Image<float> color_before = compressed(before.color.view());
+    Image<float> color_before = prepared(before.color.view());
     Point step_before;
     for (int i = 1; i < count; ++i) {
         SequenceFrame frame = frames.read(first + i);
-        Image<float> color = compressed(frame.color.view());
+        Image<float> color = prepared(frame.color.view());
         const Pair pair{color_before.view(), before.depth.view(), sites_of(frame, color.view()),
                         frame.jitter - before.jitter};
         for (const Site& site : pair.sites)
@@ -271,13 +282,13 @@ void mark_likely(std::vector<ConventionCandidate>& candidates, const Comparison&
         for (const ConventionCandidate& other : candidates)
             if (simplest(other.convention) == simplest(c.convention))
                 steadiest = std::min(steadiest, other.unsteadiness);
-        c.is_likely =
-            !is_worse(way_of(c), best) && c.unsteadiness <= 1.5 * steadiest + unsteady_enough;
+        c.is_likely = !is_worse(way_of(c), best) && c.unsteadiness <= 1.5 * steadiest + most_unsteady;
     }
 }
 
 /// Of those that are likely the one that needs the fewest flags; of the same number the nearest to the pictures.
-const ConventionCandidate& best_of(const std::vector<ConventionCandidate>& candidates, const MotionConvention& current) {
+const ConventionCandidate& best_of(const std::vector<ConventionCandidate>& candidates,
+                                   const MotionConvention& current) {
     const auto flags = [&](const ConventionCandidate& c) { return flags_between(current, c.convention).size(); };
     const ConventionCandidate* best = nullptr;
     for (const ConventionCandidate& c : candidates)
@@ -303,8 +314,7 @@ ConventionReport check_conventions(const StoredFrames& frames, const Context& co
     if (frames.count < 2)
         throw std::runtime_error("the sequence has one frame; vectors are checked between frames, so render two");
     const SequenceFrame first = frames.read(0);
-    if (first.motion.width() == 0)
-        throw std::runtime_error("the sequence has no motion vectors; name their channels by --motion");
+    if (first.motion.width() == 0) throw std::runtime_error("the frames have no motion; pass vectors to check");
     const int width = first.color.width(), height = first.color.height();
     const std::vector<MotionConvention> all = readings(frames.convention, frames.has_jitter);
     const Comparison comparison = compared(frames, all, context);
@@ -315,30 +325,37 @@ ConventionReport check_conventions(const StoredFrames& frames, const Context& co
     const Way& still = *std::ranges::min_element(first_still, comparison.ways.end(), {}, error);
     ConventionReport report;
     report.pairs = comparison.pairs;
+    report.still_error = error(still);
     for (const MotionConvention& c : all) {
         const Way& way = *std::ranges::find(comparison.ways, simplest(c), &Way::convention);
         report.candidates.push_back({c, error(way), unsteadiness(comparison, c, width, height)});
     }
     std::ranges::stable_sort(report.candidates, is_nearer);
     mark_likely(report.candidates, comparison, nearest);
-    report.current = *std::ranges::find(report.candidates, frames.convention, &ConventionCandidate::convention);
-    report.best = best_of(report.candidates, frames.convention);
-    report.still_error = error(still);
-    if (comparison.largest_motion < least_motion || comparison.sites == 0) {
-        report.reason = "nothing moves";
-        return report;
-    }
-    if (!is_worse(still, nearest)) {
-        report.reason = "no reading of the vectors explains the pictures better than standing still";
-        return report;
-    }
-    report.flags = flags_between(frames.convention, report.best.convention);
-    report.verdict = report.flags.empty() ? ConventionReport::Verdict::right : ConventionReport::Verdict::wrong;
-    report.open = open_options(report);
+    if (comparison.largest_motion < least_motion) report.reason = "nothing moves";
+    else if (!is_worse(still, nearest)) report.reason = "vectors explain the pictures no better than standing still";
+    return judged(std::move(report), frames.convention);
+}
+
+ConventionReport judged(ConventionReport report, const MotionConvention& current) {
+    const auto found = std::ranges::find(report.candidates, current, &ConventionCandidate::convention);
+    if (found == report.candidates.end())
+        throw Error("check_conventions: no such reading was compared; check the frames once more");
+    report.current = *found;
+    report.best = report.reason.empty() ? best_of(report.candidates, current) : *found;
+    report.flags = flags_between(current, report.best.convention);
+    report.verdict = !report.reason.empty() ? Verdict::cannot_tell
+                     : report.flags.empty() ? Verdict::right
+                                            : Verdict::wrong;
+    report.open = report.reason.empty() ? open_options(report) : std::vector<std::string>();
     return report;
 }
 
 ConventionReport check_conventions(const FrameSequence& sequence, const Context& context) {
+    if (!sequence.has_motion())
+        throw std::runtime_error(message(sequence.name(0), ": has no channel ",
+                                         convention_called(sequence.conventions()).motion_channel,
+                                         ".X; name the channels of the motion by --motion"));
     return check_conventions({.count = sequence.count(),
                               .read = [&](int i) { return sequence.read_stored(i, context.parallel.threads); },
                               .convention = sequence.convention(),

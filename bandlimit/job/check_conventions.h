@@ -16,22 +16,22 @@ namespace bandlimit::job {
 /// A reading, and how well it explains the pictures.
 struct ConventionCandidate {
     MotionConvention convention;
-    /// The mean distance of colours v / (1 + v), in [0, 1], between what pixels show and what the frame before shows
-    /// where the reading says they were; 1 where that is of another depth.
+    /// The mean distance of colours v / (1 + v), smoothed, between what pixels show and what the frame before shows where
+    /// the reading says they were; 0.2 where that is of another depth.
     double error = 0;
     /// How much the motion of the middle pixel changes from frame to frame, in pixels; 0 for less than three frames. It
     /// tells readings apart that lead to the same places: vectors that include the jitter from pictures without jitter.
     double unsteadiness = 0;
-    bool is_likely = false;  ///< the best one explains the pictures no better than by chance
+    bool is_likely = false;  ///< nothing but chance may be why another one is nearer to the pictures
 };
 
 struct ConventionReport {
     enum class Verdict { right, wrong, cannot_tell };
     Verdict verdict = Verdict::cannot_tell;
-    std::string reason;  ///< of cannot_tell: "nothing moves"
-    ConventionCandidate current, best;
-    double still_error = 0;          ///< if all vectors were 0
-    std::vector<std::string> flags;  ///< options that turn the current reading into the best: "--motion-y up"
+    std::string reason;                 ///< of cannot_tell: "nothing moves"
+    ConventionCandidate current, best;  ///< the same where the verdict is right, or there is none
+    double still_error = 0;             ///< if all vectors were 0
+    std::vector<std::string> flags;     ///< options that turn the current reading into the best: "--motion-y up"
     /// Options whose other value would explain the pictures as well, as "--motion-y" where nothing moves up or down.
     std::vector<std::string> open;
     std::vector<ConventionCandidate> candidates;  ///< the nearest to the pictures first
@@ -57,5 +57,8 @@ struct StoredFrames {
 /// throws   std::runtime_error for sequences without motion or of one frame; what `read` throws; Stopped
 ConventionReport check_conventions(const StoredFrames& frames, const Context& context = {});
 ConventionReport check_conventions(const FrameSequence& sequence, const Context& context = {});
+
+/// What the same comparison says to another reading. Throws Error unless it is among the candidates.
+ConventionReport judged(ConventionReport report, const MotionConvention& current);
 
 }  // namespace bandlimit::job

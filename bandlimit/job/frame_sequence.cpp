@@ -215,9 +215,10 @@ void FrameSequence::find_motion(const SequenceJob& job, std::string_view layer) 
     motion_.first = asked.empty() ? channel_called(names, usual) : channel_asked(names, asked, "X", file, "motion");
     if (motion_.first < 0 && is_own) motion_.first = first_of(names, {"X", "R"});
     if (motion_.first < 0 && is_own)
-        throw std::runtime_error(fmt::format("{}: has no channel {}, X or R; name the motion's, as --motion {}:NAME; it "
-                                             "has {}",
-                                             file, usual, job.motion, fmt::join(names, ", ")));
+        throw std::runtime_error(
+            fmt::format("{}: has no channel {}, X or R; name the motion's, as --motion {}:NAME; it "
+                        "has {}",
+                        file, usual, job.motion, fmt::join(names, ", ")));
     if (motion_.first < 0) return;
     const std::string& x = names[static_cast<std::size_t>(motion_.first)];
     if (is_own && (x == "R" || x.ends_with(".R"))) check_adjacent(names, motion_.first, {"R", "G"}, file);
@@ -254,8 +255,8 @@ Point FrameSequence::stored_jitter(int i) const {
 
 /// All channels of the file that a buffer of frame `i` is in.
 Image<float> FrameSequence::read_all(const Buffer& buffer, int i, int threads) const {
-    const std::string& path = buffer.paths.empty() ? files_[static_cast<std::size_t>(i)].path
-                                                   : buffer.paths[static_cast<std::size_t>(i)];
+    const std::string& path =
+        buffer.paths.empty() ? files_[static_cast<std::size_t>(i)].path : buffer.paths[static_cast<std::size_t>(i)];
     ImageReader reader(path, threads);
     const ImageInfo& info = reader.info();
     if (info.width != width_ || info.height != height_)

@@ -66,8 +66,7 @@ std::vector<std::string> flags_between(const MotionConvention& from, const Motio
     const std::vector<ConventionSetting> old = settings_of(from), wanted = settings_of(to);
     std::vector<std::string> flags;
     for (std::size_t i = 0; i < old.size(); ++i)
-        if (old[i].value != wanted[i].value)
-            flags.push_back(fmt::format("--{} {}", wanted[i].option, wanted[i].value));
+        if (old[i].value != wanted[i].value) flags.push_back(fmt::format("--{} {}", wanted[i].option, wanted[i].value));
     return flags;
 }
 
