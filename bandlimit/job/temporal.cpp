@@ -142,6 +142,7 @@ Image<float> clamped(View<const float> picture) {
     return result;
 }
 
+/// Colour is multiplied by alpha, as frames have it.
 void write_frame(const std::string& path, View<const float> picture, int threads) {
     ImageTarget target;
     target.width = picture.width, target.height = picture.height;
@@ -149,7 +150,9 @@ void write_frame(const std::string& path, View<const float> picture, int threads
     target.alpha = 3;
     target.depth = Depth::f32;
     target.transfer = Transfer::linear;
-    write_codes(path, target, picture, threads);
+    PictureWriter writer(path, target, true, threads);
+    writer.write(picture, true);
+    writer.finish();
 }
 
 }  // namespace
