@@ -106,8 +106,8 @@ public:
     /// Throws Error for sizes below 1.
     TemporalHistory(int width, int height);
 
-    int width() const { return sums_.width(); }
-    int height() const { return sums_.height(); }
+    int width() const { return now_.sums.width(); }
+    int height() const { return now_.sums.height(); }
     /// Forgets everything.
     void reset() { frames_ = 0; }
     /// How many frames it holds.
@@ -115,14 +115,17 @@ public:
 
     /// Red, green, blue and 1, each times the weight of what was gathered: [width x height x 4], interleaved. Highlights
     /// are compressed where the options say so.
-    View<const float> sums() const { return sums_.view(); }
+    View<const float> sums() const { return now_.sums.view(); }
 
 private:
     friend class TemporalStep;
 
-    Image<float> sums_, next_;
-    Image<float> alpha_, next_alpha_;  ///< times weight; empty while frames have none
-    Image<float> surface_;             ///< depth and motion of the last frame, as rendered [w x h x 3]
+    struct State {
+        Image<float> sums;
+        Image<float> transparency;  ///< 1 - alpha, times weight; empty while all is opaque
+        Image<float> surface;  ///< depth and motion of the last frame, as rendered [w x h x 4]; empty without depth
+    };
+    State now_, next_;  ///< the latter is what the former was before, to be written over
     Point jitter_{};
     double exposure_ = 1;
     int frames_ = 0;
@@ -141,7 +144,7 @@ struct TemporalDebug {
 ///
 /// shapes   frame.color of any size up to the output's; `out` [width x height x 3 or 4]
 /// range    any; samples that are not finite are left out
-/// memory   besides the history: eight floats per input pixel, and a few rows per thread
+/// memory   besides the history: a few rows per thread
 /// cost     docs/temporal.md
 /// throws   Error for shapes that do not fit, jitter beyond a pixel, and options out of range; Stopped, after which the
 ///          history is as before
