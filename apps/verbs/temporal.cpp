@@ -118,7 +118,7 @@ void write_page(const std::string& folder, const job::TemporalJob& job, const jo
     Series psnr{job.preset, {}, {}};
     std::vector<std::vector<std::string>> rows{{"frame", "PSNR in dB", "SSIM", "ms"}};
     for (const job::TemporalFrameReport& f : r.frames) {
-        if (f.psnr) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
+        if (f.psnr && std::isfinite(*f.psnr)) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
         rows.push_back({f.file, f.psnr ? fmt::format("{:.2f}", *f.psnr) : "-",
                         f.ssim ? fmt::format("{:.4f}", *f.ssim) : "-", fmt::format("{:.1f}", f.ms)});
     }

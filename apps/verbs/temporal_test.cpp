@@ -67,7 +67,7 @@ TEST(TemporalVerb, KeepsWhatIsTransparent) {
         for (int x = 0; x < 8; ++x)
             for (int c = 0; c < 4; ++c) glass.view()(x, y, c) = c == 3 ? 0.5f : 0.25f;
     job::write_picture(shell / "in/f_0.exr", glass.view(), Depth::f32);
-    ASSERT_TRUE(succeeds(shell("temporal in out")));
+    ASSERT_TRUE(succeeds(shell("temporal in out --quiet")));
     const Image<float> before = job::read_picture(shell / "in/f_0.exr"),
                        after = job::read_picture(shell / "out/f_0.exr");
     for (int c = 0; c < 4; ++c) EXPECT_NEAR(after.view()(3, 3, c), before.view()(3, 3, c), 1e-6) << c;

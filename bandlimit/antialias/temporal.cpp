@@ -147,7 +147,7 @@ public:
         make_room();
         const int height = history_.height(), bands = (height + band_rows - 1) / band_rows;
         // Ranges of several bands share their memory.
-        parallel_for(bands, std::max(1, bands / (4 * parallel_.count())), parallel_,
+        parallel_for(bands, std::max(1, bands / (2 * parallel_.count())), parallel_,
                      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                          TemporalBand band;
                          for (std::ptrdiff_t i = begin; i < end; ++i)

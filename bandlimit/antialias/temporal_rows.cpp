@@ -388,9 +388,11 @@ private:
         const Four then = four(*at[0], *at[1], *at[2], *at[3]), now = all(guide[2]);
         const Four relative = magnitude(then - now) / most(least(then, now), all(1e-6f));
         const float closest = MismatchOfDepth(least_of(relative));
-        const float* const nearest = at[(x - fx >= 0.5f ? 1 : 0) + (y - fy >= 0.5f ? 2 : 0)];
-        const float farther =
-            MismatchOfDepth(std::abs(*nearest - guide[2]) / std::max(std::min(*nearest, guide[2]), 1e-6f));
+        const int i = (x - fx >= 0.5f ? 1 : 0) + (y - fy >= 0.5f ? 2 : 0);
+        const float* const nearest = at[i];
+        alignas(16) float lanes[4];
+        store(relative, lanes);
+        const float farther = MismatchOfDepth(lanes[i]);
         if (!(farther > closest)) return closest;
         const float dx = nearest[1] - guide[0], dy = nearest[2] - guide[1];
         const float otherwise = std::clamp(std::sqrt(dx * dx + dy * dy) - velocity_tolerance, 0.0f, 1.0f);

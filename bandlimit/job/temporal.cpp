@@ -178,7 +178,7 @@ TemporalReport temporal(const TemporalJob& job, const Context& context) {
     report.in_width = source.width, report.in_height = source.height;
     report.width = scaled(source.width, job.scale), report.height = scaled(source.height, job.scale);
     report.conventions = source.conventions, report.jitter_length = source.jitter_length;
-    report.mip_bias = -std::log2(job.scale);
+    report.mip_bias = std::log2(1 / job.scale);
     const auto pixels = static_cast<std::uint64_t>(report.width) * static_cast<std::uint64_t>(report.height);
     require_memory(pixels * (8 + 4 + 4 + 6) * sizeof(float),
                    fmt::format("a history of {} x {} pixels", report.width, report.height));
