@@ -62,6 +62,11 @@ std::string_view name_of(HistoryKernel kernel) {
     return names[static_cast<std::size_t>(kernel)];
 }
 
+std::string_view name_of(Accumulation rule) {
+    constexpr std::array<std::string_view, 3> names{"weighted", "per-frame", "input-sized"};
+    return names[static_cast<std::size_t>(rule)];
+}
+
 std::string_view name_of(Rectification rectification) {
     constexpr std::array<std::string_view, 4> names{"none", "clamp", "clip", "variance"};
     return names[static_cast<std::size_t>(rectification)];
@@ -108,6 +113,13 @@ TemporalOptions temporal_preset(std::string_view name) {
 TemporalHistory::TemporalHistory(int width, int height) {
     if (width < 1 || height < 1) fail("TemporalHistory: ", width, " x ", height, " pixels; pass at least 1 x 1");
     now_.sums = Image<float>(width, height, 4, Layout::interleaved);
+}
+
+TemporalHistory TemporalHistory::clone() const {
+    TemporalHistory copy(width(), height());
+    copy.now_ = {now_.sums.clone(), now_.transparency.clone(), now_.surface.clone()};
+    copy.jitter_ = jitter_, copy.exposure_ = exposure_, copy.frames_ = frames_;
+    return copy;
 }
 
 /// What a thread needs of the frame for some rows of the output.

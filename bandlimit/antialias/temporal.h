@@ -49,6 +49,7 @@ enum class Accumulation {
     /// h' = h + alpha w (r / K - h), w the largest weight of a sample, and the kernel sized to the input. It blurs.
     input_sized
 };
+std::string_view name_of(Accumulation rule);
 
 /// How the history is read where it was.
 enum class HistoryKernel { bilinear, catmull_rom, catmull_rom5, lanczos2, bspline };
@@ -100,7 +101,7 @@ struct TemporalOptions {
 TemporalOptions temporal_preset(std::string_view name);
 std::span<const std::string_view> temporal_presets();
 
-/// What frames before left at each output pixel. A value: copies are branches.
+/// What frames before left at each output pixel.
 class TemporalHistory {
 public:
     /// Throws Error for sizes below 1.
@@ -108,6 +109,8 @@ public:
 
     int width() const { return now_.sums.width(); }
     int height() const { return now_.sums.height(); }
+    /// A copy, which goes its own way: to try what one frame does under several options.
+    TemporalHistory clone() const;
     /// Forgets everything.
     void reset() { frames_ = 0; }
     /// How many frames it holds.

@@ -58,7 +58,7 @@ struct TemporalLine {
     const float* gathered = nullptr;  ///< the weighted samples about each output pixel
     const float* guide = nullptr;     ///< guide_row() of the nearest input row
     const float* box = nullptr;       ///< box_row() of it; none where nothing is rectified
-    FiniteRows rows = {};                  ///< at least those about it
+    FiniteRows rows = {};             ///< at least those about it
 };
 
 /// Takes a row of samples into the history, and shows it.

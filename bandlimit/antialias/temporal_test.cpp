@@ -331,6 +331,24 @@ TEST(Temporal, ACutIsANewBeginning) {
     EXPECT_EQ(history.frames(), 4);
 }
 
+TEST(Temporal, AClonedHistoryGoesItsOwnWay) {
+    const Image<float> grey = filled(16, 16, {0.5f, 0.5f, 0.5f, 0.5f}), white = filled(16, 16, {1, 1, 1, 1}),
+                       depth = filled(16, 16, {2});
+    TemporalHistory history(20, 20);
+    Image<float> a(20, 20, 4), b(20, 20, 4);
+    for (int f = 0; f < 3; ++f)
+        accumulate(history, {.color = grey.view(), .depth = depth.view(), .jitter = jitter_of(f)}, {}, a.view());
+    TemporalHistory branch = history.clone();
+    EXPECT_EQ(branch.frames(), 3);
+    accumulate(branch, {.color = white.view(), .depth = depth.view(), .jitter = jitter_of(3)}, {}, b.view());
+    EXPECT_EQ(history.frames(), 3);
+    TemporalHistory other = history.clone();
+    accumulate(history, {.color = grey.view(), .depth = depth.view(), .jitter = jitter_of(3)}, {}, a.view());
+    EXPECT_LT(a.view()(9, 9), b.view()(9, 9) - 0.05f);
+    accumulate(other, {.color = grey.view(), .depth = depth.view(), .jitter = jitter_of(3)}, {}, b.view());
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(a.view()(9, 9, c), b.view()(9, 9, c));
+}
+
 // What moves by whole pixels is read where it was, exactly; a picture that moves so is as sharp as one that is still.
 TEST(Temporal, FollowsMotion) {
     const int size = 48;
