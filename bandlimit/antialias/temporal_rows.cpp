@@ -18,6 +18,7 @@ namespace bandlimit {
 
 constexpr float far_away = 1e10f;           // the depth of what has none
 constexpr float velocity_tolerance = 0.5f;  // input pixels per frame
+constexpr float still_motion = 0.01f;       // the same; less is no motion
 constexpr float full_doubt_speed = 0.1f;    // output pixels per frame; what is slower is doubted less
 constexpr float least_extent = 0.02f;       // of a box, when something is measured by it
 
@@ -376,7 +377,8 @@ private:
 
     /// How much what the last frame saw about a place, in output pixels, is something else than what is there now: by
     /// how little the depth of any of the four samples about it is like that of `guide`, or by the depth of the nearest
-    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.)
+    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.) What
+    /// does not move now has not come in front of what was farther: the samples of that frame missed it.
     HWY_INLINE float MismatchOfSurface(const float* guide, float x, float y) const {
         const View<const float>& before = pass_.surface;
         x = x * surface_x_ + surface_left_, y = y * surface_y_ + surface_top_;
@@ -386,7 +388,9 @@ private:
         const int y0 = std::clamp(top, 0, before.height - 1), y1 = std::clamp(top + 1, 0, before.height - 1);
         const float* const at[4] = {&before(x0, y0), &before(x1, y0), &before(x0, y1), &before(x1, y1)};
         const Four then = four(*at[0], *at[1], *at[2], *at[3]), now = all(guide[2]);
-        const Four relative = magnitude(then - now) / most(least(then, now), all(1e-6f));
+        Four relative = magnitude(then - now) / most(least(then, now), all(1e-6f));
+        if (std::abs(guide[0]) < still_motion && std::abs(guide[1]) < still_motion)
+            relative = where_more(then, now, all(0), relative);
         const float closest = MismatchOfDepth(least_of(relative));
         const int i = (x - fx >= 0.5f ? 1 : 0) + (y - fy >= 0.5f ? 2 : 0);
         const float* const nearest = at[i];
