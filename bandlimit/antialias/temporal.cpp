@@ -16,6 +16,7 @@ namespace {
 
 constexpr int band_rows = 32;
 constexpr float velocity_tolerance = 0.5f;  // input pixels per frame
+constexpr float still_motion = 0.01f;       // the same; less is no motion
 constexpr float full_doubt_speed = 0.1f;    // output pixels per frame; what is slower is doubted less
 
 constexpr std::array<std::string_view, 6> preset_names{"fast",      "balanced",  "sharp",
@@ -201,7 +202,8 @@ private:
 
     /// How much what the last frame saw about a place, in input pixels, is something else than what is there now: by how
     /// little the depth of any of the four samples about it is like that of `guide`, or by the depth of the nearest
-    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.)
+    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.) What
+    /// does not move now has not come in front of what was farther: the samples of that frame missed it.
     float mismatch_of_surface(const float* guide, float x, float y) const {
         const View<const float> before = std::as_const(history_.surface_).view();
         if (before.width == 0 || !std::isfinite(options_.depth_tolerance)) return 0;
@@ -209,15 +211,18 @@ private:
         y *= static_cast<float>(before.height) / static_cast<float>(frame_.color.height);
         x -= 0.5f + static_cast<float>(history_.jitter_.x), y -= 0.5f + static_cast<float>(history_.jitter_.y);
         const float left = std::floor(x), top = std::floor(y);
+        const bool is_still = std::abs(guide[0]) < still_motion && std::abs(guide[1]) < still_motion;
+        const auto mismatch_of = [&](const float* sample) {
+            return is_still && sample[0] > guide[2] ? 0 : mismatch_of_depth(sample[0], guide[2]);
+        };
         float least = 3e38f;
         for (int j = 0; j < 2; ++j)
             for (int i = 0; i < 2; ++i)
-                least = std::min(
-                    least, mismatch_of_depth(*sample_before(left + static_cast<float>(i), top + static_cast<float>(j)),
-                                             guide[2]));
+                least = std::min(least,
+                                 mismatch_of(sample_before(left + static_cast<float>(i), top + static_cast<float>(j))));
         const float* const nearest = sample_before(std::floor(x + 0.5f), std::floor(y + 0.5f));
         const float otherwise = std::hypot(nearest[1] - guide[0], nearest[2] - guide[1]) - velocity_tolerance;
-        return std::max(least, std::min(mismatch_of_depth(*nearest, guide[2]), std::clamp(otherwise, 0.0f, 1.0f)));
+        return std::max(least, std::min(mismatch_of(nearest), std::clamp(otherwise, 0.0f, 1.0f)));
     }
 
     /// Depth and motion of a sample of the last frame, or of the one at the border that is nearest.
