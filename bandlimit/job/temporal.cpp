@@ -43,28 +43,13 @@ Image<float> channels_copied(View<const float> all, int first, int count) {
     return copy;
 }
 
-/// The scene of the output's size, seen by an input whose pixels are larger: the truth is then what `supersample` draws
-/// at the output's size.
-Scene seen_by_input(const TemporalJob& job, int width, int height) {
-    const Scene scene = make_scene(job.input, width, height);
-    const double step_x = double(width) / job.width, step_y = double(height) / job.height;
-    Scene seen = scene;
-    seen.at = [at = scene.at, step_x, step_y](double x, double y, int frame) {
-        SceneSample sample = at(x * step_x, y * step_y, frame);
-        sample.motion.x /= step_x, sample.motion.y /= step_y;
-        return sample;
-    };
-    seen.color = [color = scene.color, step_x, step_y](double x, double y, int frame) {
-        return color(x * step_x, y * step_y, frame);
-    };
-    seen.focal = scene.focal / step_x;
-    return seen;
-}
-
 Source source_of_scene(const TemporalJob& job, const Context& context) {
     const int length = jitter_length(job.scale);
     const std::vector<Point> jitter = jitter_sequence(job.jitter, length);
-    const Scene scene = seen_by_input(job, scaled(job.width, job.scale), scaled(job.height, job.scale));
+    const int width = scaled(job.width, job.scale), height = scaled(job.height, job.scale);
+    // That of the output's size: the truth is then what `supersample` draws.
+    const Scene scene = with_larger_pixels(make_scene(job.input, width, height), double(width) / job.width,
+                                           double(height) / job.height);
     Source source;
     source.count = job.frames > 0 ? job.frames : std::max(16, length);
     source.width = job.width, source.height = job.height, source.jitter_length = length;
