@@ -34,6 +34,7 @@ ordered_json json_of(const job::ConventionCandidate& c, const job::ConventionRep
     return {{"reading", json_of(c.convention)},
             {"flags", job::flags_between(r.current.convention, c.convention)},
             {"error", c.error},
+            {"excess", c.excess},
             {"unsteadiness", c.unsteadiness},
             {"likely", c.is_likely}};
 }

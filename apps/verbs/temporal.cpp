@@ -11,6 +11,7 @@
 #include "apps/page/page.h"
 #include "apps/page/plot.h"
 #include "apps/verbs/convention_check.h"
+#include "bandlimit/antialias/temporal_options.h"
 #include "bandlimit/io/atomic_file.h"
 #include "bandlimit/job/command.h"
 #include "bandlimit/job/pictures.h"
@@ -26,6 +27,7 @@ struct Options {
     job::TemporalJob job;
     std::string size, report, units, direction, y_axis, jitter = "halton";
     std::string axes, motion_jitter, jitter_sign, jitter_y;
+    std::vector<std::string> set;  ///< NAME=VALUE
     Parallel parallel;
     bool json = false, checks_conventions = false;
 };
@@ -41,10 +43,30 @@ Value one_of(const std::string& option, const std::string& text,
     throw UsageError(fmt::format("{}: \"{}\" is unknown; choose one of: {}", option, text, list));
 }
 
+/// The options of a preset, changed by what --set says.
+TemporalOptions options_of(const Options& o) {
+    TemporalOptions options = temporal_preset(o.job.preset);
+    for (const std::string& item : o.set) {
+        const std::size_t equals = item.find('=');
+        if (equals == std::string::npos)
+            throw UsageError(fmt::format("--set: \"{}\" has no value; pass e.g. still-frames=32", item));
+        set_option(options, item.substr(0, equals), item.substr(equals + 1));
+    }
+    return options;
+}
+
+/// The lines of --help that say what --set takes.
+std::string help_of_set() {
+    std::string text = "Change one option of the preset; may be repeated. NAME is one of";
+    for (const TemporalOptionInfo& info : temporal_option_infos())
+        text += fmt::format("\n  {:<20} {}: {}", info.name, info.meaning, info.values);
+    return text;
+}
+
 job::TemporalJob job_of(const Options& o) {
     using Units = job::MotionConvention::Units;
     job::TemporalJob job = o.job;
-    job.options = temporal_preset(job.preset);
+    job.options = options_of(o);
     job.jitter = parse_jitter(o.jitter);
     job.measures = !o.report.empty();
     if (!o.size.empty()) {
@@ -83,7 +105,7 @@ void check(const Options& o) {
     job::check(job);
     if (o.checks_conventions && is_scene(job.input))
         throw UsageError("--check-conventions: scenes have ours; name a folder of frames");
-    if (!o.checks_conventions && job.out.empty()) throw UsageError("OUTDIR is required");
+    if (!o.checks_conventions && job.out.empty()) throw UsageError("OUTDIR is required; name a folder for the frames");
     if (o.report.empty()) return;
     // The report may lie in the folder of the frames, which is made once these are known to be readable.
     namespace fs = std::filesystem;
@@ -134,7 +156,7 @@ void write_page(const std::string& folder, const job::TemporalJob& job, const jo
     Series psnr{job.preset, {}, {}};
     std::vector<std::vector<std::string>> rows{{"frame", "PSNR in dB", "SSIM", "ms"}};
     for (const job::TemporalFrameReport& f : r.frames) {
-        if (f.psnr) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
+        if (f.psnr && std::isfinite(*f.psnr)) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
         rows.push_back({f.file, f.psnr ? fmt::format("{:.2f}", *f.psnr) : "-",
                         f.ssim ? fmt::format("{:.4f}", *f.ssim) : "-", fmt::format("{:.1f}", f.ms)});
     }
@@ -194,6 +216,7 @@ void add_temporal(Program& program) {
                     "balanced (default), fast, sharp; reference: supersampling over time, without rejection;\n"
                     "per-frame and input-sized: the plain rules, to compare with")
         .type_name("P");
+    verb.add_option("--set", o->set, help_of_set()).type_name("NAME=VALUE").one_at_a_time();
     verb.add_option("--frames", o->job.frames, "How many frames; default all, of scenes a period of the jitter")
         .type_name("N");
     verb.add_option("--jitter", o->jitter, "Jitter of scenes: halton (default), r2, rotated or sobol").type_name("J");

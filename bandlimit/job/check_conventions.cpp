@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "bandlimit/antialias/history_sampler.h"
+#include "bandlimit/antialias/history_weights.h"
 #include "bandlimit/resample/apply.h"
 #include "bandlimit/resample/bank.h"
 
@@ -18,7 +18,9 @@ using JitterSign = MotionConvention::JitterSign;
 using Verdict = ConventionReport::Verdict;
 
 constexpr int most_frames = 6, most_sites = 32768, parts_x = 16, parts_y = 9;
-constexpr double standard_errors = 3;    // by which a reading has to be worse to be taken for wrong
+constexpr double most_excess = 3;        // standard errors by which a reading that is likely may be worse
+constexpr double close_excess = 1;       // and one that is as good as the best
+constexpr int least_parts = 4;           // to tell anything by
 constexpr double error_of_depth = 0.2;   // where the frame before has another depth; a colour's is 0.02 to 0.1
 constexpr float depth_tolerance = 0.1f;  // relative: other depths are of something else
 constexpr double least_motion = 0.05;    // pixels; less is rounding
@@ -45,21 +47,29 @@ Image<float> prepared(View<const float> color) {
     return picture;
 }
 
+/// The weights of samples -1, 0, 1 and 2 at t in [0, 1) from sample 0.
+std::array<float, 4> bspline_weights(float t) {
+    const CubicPart& powers = history_weights(HistoryKernel::bspline).front();
+    std::array<float, 4> weights{};
+    for (std::size_t i = 0; i < 4; ++i)
+        weights[i] = powers[0][i] + t * (powers[1][i] + t * (powers[2][i] + t * powers[3][i]));
+    return weights;
+}
+
 /// What `picture` shows at (x, y), where samples are at whole numbers, through a B-spline: it smooths as much between
 /// samples as at them, so that no way is at an advantage.
 std::array<float, 3> shown_at(View<const float> picture, float x, float y) {
     x = std::clamp(x, 0.0f, static_cast<float>(picture.width - 1));
     y = std::clamp(y, 0.0f, static_cast<float>(picture.height - 1));
     const int left = static_cast<int>(x), top = static_cast<int>(y);
-    float weights_x[4], weights_y[4];
-    history_weights(HistoryKernel::bspline, x - static_cast<float>(left), weights_x);
-    history_weights(HistoryKernel::bspline, y - static_cast<float>(top), weights_y);
+    const std::array<float, 4> weights_x = bspline_weights(x - static_cast<float>(left));
+    const std::array<float, 4> weights_y = bspline_weights(y - static_cast<float>(top));
     std::array<float, 3> sum{};
     for (int j = 0; j < 4; ++j) {
         const int v = std::clamp(top + j - 1, 0, picture.height - 1);
         for (int i = 0; i < 4; ++i) {
             const float* const sample = &picture(std::clamp(left + i - 1, 0, picture.width - 1), v);
-            const float weight = weights_x[i] * weights_y[j];
+            const float weight = weights_x[static_cast<std::size_t>(i)] * weights_y[static_cast<std::size_t>(j)];
             for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * sample[c];
         }
     }
@@ -175,16 +185,16 @@ std::vector<Way> ways_of(const std::vector<MotionConvention>& readings) {
     return ways;
 }
 
-/// Whether `way` has larger errors than `other` in the parts where they differ, beyond chance.
-bool is_worse(const Way& way, const Way& other) {
+/// By how many standard errors the errors of `way` are larger than those of `other`, over the parts where they differ.
+double excess(const Way& way, const Way& other) {
     double n = 0, sum = 0, squares = 0;
     for (std::size_t i = 0; i < way.sums.size(); ++i) {
         const double d = way.sums[i] - other.sums[i];
         n += d != 0, sum += d, squares += d * d;
     }
-    if (n < 2) return false;
-    const double mean = sum / n, variance = std::max(0.0, squares / n - mean * mean) / (n - 1);
-    return mean > standard_errors * std::sqrt(variance);
+    if (n < least_parts) return 0;
+    const double mean = sum / n;
+    return mean / std::sqrt(std::max(squares / n - mean * mean, 1e-30) / (n - 1));
 }
 
 /// What all frames together show.
@@ -282,17 +292,22 @@ void mark_likely(std::vector<ConventionCandidate>& candidates, const Comparison&
         for (const ConventionCandidate& other : candidates)
             if (simplest(other.convention) == simplest(c.convention))
                 steadiest = std::min(steadiest, other.unsteadiness);
-        c.is_likely = !is_worse(way_of(c), best) && c.unsteadiness <= 1.5 * steadiest + most_unsteady;
+        c.excess = excess(way_of(c), best);
+        c.is_likely = c.excess <= most_excess && c.unsteadiness <= 1.5 * steadiest + most_unsteady;
     }
 }
 
-/// Of those that are likely the one that needs the fewest flags; of the same number the nearest to the pictures.
+/// The current reading, if it is likely; else of those that are about as near to the pictures as the nearest the one that
+/// needs the fewest flags.
 const ConventionCandidate& best_of(const std::vector<ConventionCandidate>& candidates,
-                                   const MotionConvention& current) {
-    const auto flags = [&](const ConventionCandidate& c) { return flags_between(current, c.convention).size(); };
-    const ConventionCandidate* best = nullptr;
+                                   const ConventionCandidate& current) {
+    const ConventionCandidate* best = &current;
+    if (current.is_likely) return *best;
+    const auto flags = [&](const ConventionCandidate& c) {
+        return flags_between(current.convention, c.convention).size();
+    };
     for (const ConventionCandidate& c : candidates)
-        if (c.is_likely && (best == nullptr || flags(c) < flags(*best))) best = &c;
+        if (c.is_likely && c.excess <= close_excess && (best == &current || flags(c) < flags(*best))) best = &c;
     return *best;
 }
 
@@ -333,7 +348,8 @@ ConventionReport check_conventions(const StoredFrames& frames, const Context& co
     std::ranges::stable_sort(report.candidates, is_nearer);
     mark_likely(report.candidates, comparison, nearest);
     if (comparison.largest_motion < least_motion) report.reason = "nothing moves";
-    else if (!is_worse(still, nearest)) report.reason = "vectors explain the pictures no better than standing still";
+    else if (excess(still, nearest) <= most_excess)
+        report.reason = "vectors explain the pictures no better than standing still";
     return judged(std::move(report), frames.convention);
 }
 
@@ -342,7 +358,7 @@ ConventionReport judged(ConventionReport report, const MotionConvention& current
     if (found == report.candidates.end())
         throw Error("check_conventions: no such reading was compared; check the frames once more");
     report.current = *found;
-    report.best = report.reason.empty() ? best_of(report.candidates, current) : *found;
+    report.best = report.reason.empty() ? best_of(report.candidates, *found) : *found;
     report.flags = flags_between(current, report.best.convention);
     report.verdict = !report.reason.empty() ? Verdict::cannot_tell
                      : report.flags.empty() ? Verdict::right

@@ -22,7 +22,9 @@ struct ConventionCandidate {
     /// How much the motion of the middle pixel changes from frame to frame, in pixels; 0 for less than three frames. It
     /// tells readings apart that lead to the same places: vectors that include the jitter from pictures without jitter.
     double unsteadiness = 0;
-    bool is_likely = false;  ///< nothing but chance may be why another one is nearer to the pictures
+    /// By how many standard errors it is farther from the pictures than the nearest, over the parts of the pictures.
+    double excess = 0;
+    bool is_likely = false;  ///< nothing but chance may be why another one is nearer: an excess of at most 3
 };
 
 struct ConventionReport {
@@ -50,7 +52,7 @@ struct StoredFrames {
 /// axes, 3 units, and 9 readings of the jitter where there is any.
 ///
 /// A reading is taken for wrong if another one is nearer to the pictures in so many parts of them that chance is not
-/// the reason (three standard errors); of several that are as likely the one nearest to the current reading is best.
+/// the reason (three standard errors); of several that are about as near, the one that needs the fewest flags is best.
 /// What is infinitely far away is left out.
 /// cost     up to 32768 pixels of each frame for each of 120 readings: about a second
 /// memory   two frames

@@ -36,32 +36,48 @@ struct Sequence {
     SceneOptions options = {};
 };
 
-/// Frames of a scene as a renderer with the conventions `c` stores them, read by ours so far.
-StoredFrames frames_of(const Sequence& s, const MotionConvention& c = {}) {
+/// Where frame i is sampled, and where it says that it is.
+Point listed_jitter(int i) { return i < 0 ? Point{} : jitter_sequence(JitterKind::halton, 16)[std::size_t(i)]; }
+
+/// The frames of a scene by our conventions; without jitter in the pictures where `is_sampled_at_centre`.
+std::vector<SequenceFrame> rendered(const Sequence& s, bool is_sampled_at_centre = false) {
     const Scene scene = make_scene(s.scene, s.width, s.height, s.options);
-    const std::vector<Point> jitter = jitter_sequence(JitterKind::halton, 16);
-    const bool is_in_pictures = s.is_jittered && c.jitter_sign != JitterSign::none;
-    const auto shown_jitter = [=](int i) { return is_in_pictures && i >= 0 ? jitter[std::size_t(i)] : Point{}; };
-    StoredFrames frames;
-    frames.count = s.count, frames.has_jitter = s.is_jittered;
-    frames.read = [=](int i) {
-        const Point now = shown_jitter(i), before = shown_jitter(i - 1);
-        const Image<float> all = render_scene(scene, s.width, s.height, i, {.jitter = now});
-        SequenceFrame frame;
-        frame.color = channels_copied(all.view(), scene_channel::color, 4);
-        frame.depth = channels_copied(all.view(), scene_channel::depth, 1);
-        frame.motion = channels_copied(all.view(), scene_channel::motion, 2);
-        if (s.is_jittered) frame.jitter = stored_jitter(jitter[std::size_t(i)], c);
+    std::vector<SequenceFrame> frames;
+    for (int i = 0; i < s.count; ++i) {
+        const Point jitter = s.is_jittered && !is_sampled_at_centre ? listed_jitter(i) : Point{};
+        const Image<float> all = render_scene(scene, s.width, s.height, i, {.jitter = jitter});
+        frames.emplace_back();
+        frames.back().color = channels_copied(all.view(), scene_channel::color, 4);
+        frames.back().depth = channels_copied(all.view(), scene_channel::depth, 1);
+        frames.back().motion = channels_copied(all.view(), scene_channel::motion, 2);
+    }
+    return frames;
+}
+
+/// The same frames as a renderer with the conventions `c` stores them, read by ours so far.
+StoredFrames stored(const Sequence& s, const std::vector<SequenceFrame>& frames, const MotionConvention& c) {
+    StoredFrames result;
+    result.count = s.count, result.has_jitter = s.is_jittered;
+    result.read = [=, &frames](int i) {
+        const SequenceFrame& from = frames[std::size_t(i)];
+        const Point now = listed_jitter(i), before = listed_jitter(i - 1);
+        SequenceFrame frame{from.color.clone(), from.depth.clone(), from.motion.clone(), {}};
+        if (s.is_jittered) frame.jitter = stored_jitter(now, c);
         for (int y = 0; y < s.height; ++y)
             for (int x = 0; x < s.width; ++x) {
                 Point motion{double(frame.motion.view()(x, y, 0)), double(frame.motion.view()(x, y, 1))};
                 if (c.includes_jitter) motion.x += now.x - before.x, motion.y += now.y - before.y;
-                const Point stored = stored_motion(motion, c, s.width, s.height);
-                frame.motion.view()(x, y, 0) = float(stored.x), frame.motion.view()(x, y, 1) = float(stored.y);
+                const Point vector = stored_motion(motion, c, s.width, s.height);
+                frame.motion.view()(x, y, 0) = float(vector.x), frame.motion.view()(x, y, 1) = float(vector.y);
             }
         return frame;
     };
-    return frames;
+    return result;
+}
+
+ConventionReport report_of(const Sequence& s) {
+    const std::vector<SequenceFrame> frames = rendered(s);
+    return check_conventions(stored(s, frames, {}));
 }
 
 std::vector<MotionConvention> motion_conventions() {
@@ -105,9 +121,10 @@ TEST(MotionConvention, FlagsNameWhatDiffers) {
 
 // However vectors are stored, the check names the options that take them back.
 TEST(CheckConventions, FindsEveryReadingOfVectors) {
+    const Sequence s{.is_jittered = false};
+    const std::vector<SequenceFrame> frames = rendered(s);
     for (const MotionConvention& c : motion_conventions()) {
-        const StoredFrames frames = frames_of({.is_jittered = false}, c);
-        const ConventionReport report = check_conventions(frames);
+        const ConventionReport report = check_conventions(stored(s, frames, c));
         EXPECT_EQ(report.flags, flags_between({}, c));
         EXPECT_EQ(report.best.convention, c);
         EXPECT_EQ(report.verdict, c == MotionConvention{} ? Verdict::right : Verdict::wrong);
@@ -117,6 +134,8 @@ TEST(CheckConventions, FindsEveryReadingOfVectors) {
 }
 
 TEST(CheckConventions, FindsEveryReadingOfJitter) {
+    const Sequence s;
+    const std::vector<SequenceFrame> frames = rendered(s), unjittered = rendered(s, true);
     for (const MotionConvention& c : {
              MotionConvention{},
              {.jitter_sign = JitterSign::minus},
@@ -128,16 +147,17 @@ TEST(CheckConventions, FindsEveryReadingOfJitter) {
              {.jitter_sign = JitterSign::none},
              {.units = Units::uv, .is_y_up = true, .includes_jitter = true},
          })
-        EXPECT_EQ(check_conventions(frames_of({}, c)).flags, flags_between({}, c));
+        EXPECT_EQ(check_conventions(stored(s, c.jitter_sign == JitterSign::none ? unjittered : frames, c)).flags,
+                  flags_between({}, c));
 }
 
 // One comparison tells of each of the 216 readings what to change.
 TEST(CheckConventions, TellsWhatToChangeInAnyReading) {
-    for (const Sequence& s : {Sequence{"plane"}, {"mover", 144, 96}}) {
-        const ConventionReport report = check_conventions(frames_of(s));
+    for (const Sequence& s : {Sequence{"plane"}, {"mover", 120, 80, 4}}) {
+        const ConventionReport report = report_of(s);
         ASSERT_EQ(report.candidates.size(), 216u);
         EXPECT_LT(report.best.error, report.still_error);
-        EXPECT_EQ(report.pairs, 3);
+        EXPECT_EQ(report.pairs, s.count - 1);
         for (const ConventionCandidate& candidate : report.candidates) {
             const ConventionReport other = judged(report, candidate.convention);
             EXPECT_EQ(other.flags, flags_between(candidate.convention, {})) << s.scene;
@@ -147,40 +167,44 @@ TEST(CheckConventions, TellsWhatToChangeInAnyReading) {
 }
 
 TEST(CheckConventions, SaysWhatItCannotTell) {
-    const ConventionReport still = check_conventions(frames_of({"glyphs"}));
+    const Sequence s{"glyphs"};
+    const ConventionReport still = report_of(s);
     EXPECT_EQ(still.verdict, Verdict::cannot_tell);
     EXPECT_EQ(still.reason, "nothing moves");
     EXPECT_TRUE(still.flags.empty());
     // Vectors that have nothing to do with the pictures.
-    StoredFrames noise = frames_of({"glyphs"});
-    noise.read = [read = noise.read](int i) {
-        SequenceFrame frame = read(i);
-        Random random(std::uint64_t(7 + i));
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 96; ++x)
+    std::vector<SequenceFrame> noise = rendered(s);
+    Random random(7);
+    for (SequenceFrame& frame : noise)
+        for (int y = 0; y < s.height; ++y)
+            for (int x = 0; x < s.width; ++x)
                 for (int c = 0; c < 2; ++c) frame.motion.view()(x, y, c) = float(random.integer(-4, 4));
-        return frame;
-    };
-    EXPECT_EQ(check_conventions(noise).verdict, Verdict::cannot_tell);
-    // What moves along x alone says nothing about y.
-    const ConventionReport along_x = check_conventions(frames_of({"glyphs", 96, 64, 4, true, {.speed = 1.3}}));
-    EXPECT_EQ(along_x.verdict, Verdict::right);
-    EXPECT_EQ(along_x.open, std::vector<std::string>{"--motion-y"});
-    EXPECT_EQ(judged(along_x, {.is_y_up = true}).verdict, Verdict::right);
-    EXPECT_EQ(judged(along_x, {.is_previous_minus_current = false}).verdict, Verdict::wrong);
+    const ConventionReport unrelated = check_conventions(stored(s, noise, {}));
+    EXPECT_EQ(unrelated.verdict, Verdict::cannot_tell);
+    EXPECT_NE(unrelated.reason, still.reason);
+}
+
+// What moves along x alone says nothing about y.
+TEST(CheckConventions, LeavesOpenWhatThePicturesDo) {
+    const ConventionReport report = report_of({.scene = "glyphs", .options = {.speed = 1.3}});
+    EXPECT_EQ(report.verdict, Verdict::right);
+    EXPECT_EQ(report.open, std::vector<std::string>{"--motion-y"});
+    EXPECT_EQ(judged(report, {.is_y_up = true}).verdict, Verdict::right);
+    EXPECT_EQ(judged(report, {.is_previous_minus_current = false}).verdict, Verdict::wrong);
 }
 
 TEST(CheckConventions, RefusesWhatCannotBeCompared) {
-    EXPECT_THROW(check_conventions(frames_of({"plane", 8, 8, 1})), std::runtime_error);
-    StoredFrames bare = frames_of({"plane", 8, 8, 2});
+    EXPECT_THROW(report_of({"plane", 8, 8, 1}), std::runtime_error);
+    const Sequence s{"plane", 8, 8, 2, false};
+    std::vector<SequenceFrame> frames = rendered(s);
+    EXPECT_THROW(judged(check_conventions(stored(s, frames, {})), {.includes_jitter = true}), Error);
+    StoredFrames bare = stored(s, frames, {});
     bare.read = [read = bare.read](int i) {
         SequenceFrame frame = read(i);
         frame.motion = Image<float>();
         return frame;
     };
     EXPECT_THROW(check_conventions(bare), std::runtime_error);
-    const ConventionReport report = check_conventions(frames_of({"plane", 8, 8, 2, false}));
-    EXPECT_THROW(judged(report, {.includes_jitter = true}), Error);
 }
 
 }  // namespace

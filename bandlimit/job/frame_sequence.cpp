@@ -122,11 +122,12 @@ void FrameSequence::find_files(const SequenceJob& job) {
                 fmt::format("{}: holds no {}; name the files of the colour by --color", job.folder, pattern.name()));
     } else {
         files_ = exr_files_in(job.folder);
-        for (const std::string* text : {&job.depth, &job.motion})
-            if (is_file_pattern(*text)) {
-                const FilePattern pattern = parse_file_pattern("", *text);
+        for (const std::string* text : {&job.depth, &job.motion}) {
+            if (!is_file_pattern(*text)) continue;
+            const FilePattern pattern = parse_file_pattern("", *text);
+            if (pattern.folder.empty())  // other folders hold none of these
                 std::erase_if(files_, [&](const FrameFile& f) { return pattern.number_of(f.name) >= 0; });
-            }
+        }
         if (files_.empty())
             throw std::runtime_error(job.folder + ": holds no EXR files; name a folder with one per frame");
     }

@@ -36,28 +36,13 @@ struct Source {
 
 int scaled(int length, double scale) { return std::max(1, static_cast<int>(std::lround(length * scale))); }
 
-/// The scene of the output's size, seen by an input whose pixels are larger: the truth is then what `supersample` draws
-/// at the output's size.
-Scene seen_by_input(const TemporalJob& job, int width, int height) {
-    const Scene scene = make_scene(job.input, width, height);
-    const double step_x = double(width) / job.width, step_y = double(height) / job.height;
-    Scene seen = scene;
-    seen.at = [at = scene.at, step_x, step_y](double x, double y, int frame) {
-        SceneSample sample = at(x * step_x, y * step_y, frame);
-        sample.motion.x /= step_x, sample.motion.y /= step_y;
-        return sample;
-    };
-    seen.color = [color = scene.color, step_x, step_y](double x, double y, int frame) {
-        return color(x * step_x, y * step_y, frame);
-    };
-    seen.focal = scene.focal / step_x;
-    return seen;
-}
-
 Source source_of_scene(const TemporalJob& job, const Context& context) {
     const int length = jitter_length(job.scale);
     const std::vector<Point> jitter = jitter_sequence(job.jitter, length);
-    const Scene scene = seen_by_input(job, scaled(job.width, job.scale), scaled(job.height, job.scale));
+    const int width = scaled(job.width, job.scale), height = scaled(job.height, job.scale);
+    // That of the output's size: the truth is then what `supersample` draws.
+    const Scene scene = with_larger_pixels(make_scene(job.input, width, height), double(width) / job.width,
+                                           double(height) / job.height);
     Source source;
     source.count = job.frames > 0 ? job.frames : std::max(16, length);
     source.width = job.width, source.height = job.height, source.jitter_length = length;
@@ -135,6 +120,7 @@ Image<float> clamped(View<const float> picture) {
     return result;
 }
 
+/// Colour is multiplied by alpha, as frames have it.
 void write_frame(const std::string& path, View<const float> picture, int threads) {
     ImageTarget target;
     target.width = picture.width, target.height = picture.height;
@@ -142,7 +128,9 @@ void write_frame(const std::string& path, View<const float> picture, int threads
     target.alpha = 3;
     target.depth = Depth::f32;
     target.transfer = Transfer::linear;
-    write_codes(path, target, picture, threads);
+    PictureWriter writer(path, target, true, threads);
+    writer.write(picture, true);
+    writer.finish();
 }
 
 }  // namespace
@@ -169,7 +157,7 @@ TemporalReport temporal(const TemporalJob& job, const Context& context) {
     report.in_width = source.width, report.in_height = source.height;
     report.width = scaled(source.width, job.scale), report.height = scaled(source.height, job.scale);
     report.conventions = source.conventions, report.jitter_length = source.jitter_length;
-    report.mip_bias = -std::log2(job.scale);
+    report.mip_bias = std::log2(1 / job.scale);
     const auto pixels = static_cast<std::uint64_t>(report.width) * static_cast<std::uint64_t>(report.height);
     require_memory(pixels * (8 + 4 + 4 + 6) * sizeof(float),
                    fmt::format("a history of {} x {} pixels", report.width, report.height));
