@@ -64,15 +64,19 @@ std::array<float, 3> shown_at(View<const float> picture, float x, float y) {
     const int left = static_cast<int>(x), top = static_cast<int>(y);
     const std::array<float, 4> weights_x = bspline_weights(x - static_cast<float>(left));
     const std::array<float, 4> weights_y = bspline_weights(y - static_cast<float>(top));
+    std::array<const float*, 4> rows{};
+    std::array<std::ptrdiff_t, 4> columns{};
+    for (int i = 0; i < 4; ++i) {
+        rows[static_cast<std::size_t>(i)] = &picture(0, std::clamp(top + i - 1, 0, picture.height - 1));
+        columns[static_cast<std::size_t>(i)] = picture.dx * std::clamp(left + i - 1, 0, picture.width - 1);
+    }
     std::array<float, 3> sum{};
-    for (int j = 0; j < 4; ++j) {
-        const int v = std::clamp(top + j - 1, 0, picture.height - 1);
-        for (int i = 0; i < 4; ++i) {
-            const float* const sample = &picture(std::clamp(left + i - 1, 0, picture.width - 1), v);
-            const float weight = weights_x[static_cast<std::size_t>(i)] * weights_y[static_cast<std::size_t>(j)];
+    for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t i = 0; i < 4; ++i) {
+            const float weight = weights_x[i] * weights_y[j];
+            const float* const sample = rows[j] + columns[i];
             for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * sample[c];
         }
-    }
     return sum;
 }
 

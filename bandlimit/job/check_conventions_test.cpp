@@ -167,7 +167,7 @@ TEST(CheckConventions, TellsWhatToChangeInAnyReading) {
 }
 
 TEST(CheckConventions, SaysWhatItCannotTell) {
-    const Sequence s{"glyphs"};
+    const Sequence s{"glyphs", 48, 32, 3};
     const ConventionReport still = report_of(s);
     EXPECT_EQ(still.verdict, Verdict::cannot_tell);
     EXPECT_EQ(still.reason, "nothing moves");
