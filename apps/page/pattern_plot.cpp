@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "bandlimit/sampling/pattern_analysis.h"
 
@@ -43,8 +44,8 @@ Panel spectrum_panel(const SamplePattern& pattern) {
     PatternSpectrum spectrum = pattern_spectrum(pattern.points, highest, per_cycle);
     constexpr double peak = 4;  // times what random points have
     for (double& power : spectrum.power) power = std::min(power, peak);
-    return {fmt::format("spectrum, up to {} cycles per pixel", highest),  "frequency along x", "along y", {}, {}, {},
-            HeatMap{spectrum.width, spectrum.width, spectrum.power, peak}};
+    HeatMap map{spectrum.width, spectrum.width, spectrum.power, peak, spectrum.frequency(0), spectrum.step};
+    return {"spectrum", "cycles per pixel along x", "along y", {}, {}, {}, std::move(map)};
 }
 
 }  // namespace bandlimit::app

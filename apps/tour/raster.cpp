@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -113,19 +114,23 @@ void discs_part(Tour& tour) {
                       "filter of finite extent comes near: through a tent the spectrum is multiplied by sinc^2, "
                       "through a quadratic B-spline by sinc^3. What is left above 1/2 aliases.",
                       slides);
-    Panel panel{.title = "", .x_label = "cycles per pixel", .y_label = "magnitude", .series = {}};
-    constexpr double radius = 1;
+    Panel panel{.title = "", .x_label = "cycles per pixel", .y_label = "dB", .series = {}};
+    constexpr double radius = 1, area = std::numbers::pi * radius * radius;
+    panel.y_range = Range{-80, 0};
     for (const auto& [label, name] : {std::pair{"box: sinc", "box"},
                                       {"tent: sinc^2", "tent"},
                                       {"quadratic: sinc^3", "quadratic"},
                                       {"cone of radius 1", "cone:1"}}) {
         const RasterFilter filter = raster_filter(name);
-        panel.series.push_back(
-            curve(label, 0, 2.5, 250, [&](double f) { return std::abs(disc_spectrum(filter, radius, f, 0)); }));
+        panel.series.push_back(curve(label, 0, 2.5, 250, [&](double f) {
+            return std::max(-80.0, 20 * std::log10(std::abs(disc_spectrum(filter, radius, f, 0)) / area));
+        }));
     }
-    tour.page.figure(tour.plot("discs.svg", {panel}, 720, 380),
-                     "The spectrum of a disc of radius 1 along x, through four filters. Right of 1/2 lower is better.",
-                     "", 720);
+    tour.page.figure(
+        tour.plot("discs.svg", {panel}, 720, 380),
+        "The spectrum of a disc of radius 1 along x, through four filters. Right of 1/2 lower is better: there "
+        "sinc^2 and sinc^3 fall faster.",
+        "", 720);
 }
 
 void seams_part(Tour& tour) {

@@ -157,13 +157,15 @@ void patterns_part(Tour& tour) {
     const std::vector<SamplePattern> four{regular_pattern(4), rotated_pattern(4), d3d_pattern(4), n_rooks_pattern(4)};
     const std::vector<SamplePattern> sixteen{regular_pattern(16), halton_pattern(16), sobol_pattern(16),
                                              random_pattern(16)};
-    tour.page.figure(tour.plot("points-4.svg", panels_of(four, points_panel), 1080, 310), "Four samples in a pixel.",
+    tour.page.figure(tour.plot("points-4.svg", panels_of(four, points_panel), 1080, 290), "Four samples in a pixel.",
                      "bandlimit analyze --pattern d3d:4 --plot d3d4.svg", 1032);
-    tour.page.figure(tour.plot("coverage-4.svg", panels_of(four, coverage_panel), 1080, 350),
+    std::vector<Panel> coverage = panels_of({four[0], four[1], four[2]}, coverage_panel);
+    for (Panel& panel : coverage) panel.x_label = "edge from the centre (pixels)";
+    tour.page.figure(tour.plot("coverage-4.svg", coverage, 1080, 350),
                      "What share of the four an edge covers on its way across the pixel: along x, and in the two "
                      "directions in which leaning patterns differ most.",
-                     "", 1032);
-    tour.page.figure(tour.plot("points-16.svg", panels_of(sixteen, points_panel), 1080, 310),
+                     "bandlimit analyze --pattern rotated:4", 1032);
+    tour.page.figure(tour.plot("points-16.svg", panels_of(sixteen, points_panel), 1080, 290),
                      "Sixteen samples. Halton's and Sobol's sequences are as even as a grid, and share no columns.",
                      "bandlimit analyze --pattern sobol:16:1 --plot sobol16.svg", 1032);
     std::vector<std::vector<std::string>> rows{{"pattern", "0 degrees", "45 degrees", "26.565", "-26.565"}};
@@ -178,14 +180,15 @@ void patterns_part(Tour& tour) {
                                    sweep_edge(four[1].points, 0).levels, sweep_edge(four[3].points, 0).levels));
 
     tour.page.figure(
-        tour.plot("spectra-4.png", panels_of({four[0], four[1], four[2], sixteen[2]}, spectrum_panel), 1080, 330),
-        "Spectra, 0 in the middle, up to 12 cycles per pixel. Whatever frequency of the scene falls on a "
-        "dark spot comes out as a constant: aliases of a grid lie on a grid, of a rotated one on a "
-        "rotated grid, farther away along the axes. Sobol's (16 points) spreads them.",
+        tour.plot("spectra-4.png", panels_of(four, spectrum_panel), 1080, 290),
+        "What the mean over the samples of a pixel leaves of a frequency of the scene: white nothing, brown all, which "
+        "then aliases. In the middle is 0. The other spots of a grid lie on a grid; turned by 45 degrees, they lie "
+        "farther away along the axes; those of Direct3D's pattern lean, and those of n-rooks crowd.",
         "bandlimit analyze --pattern rotated:4 --plot rotated4.svg", 1032);
-    tour.page.figure(tour.plot("spectra-16.png", panels_of(sixteen, spectrum_panel), 1080, 330),
-                     "The same for sixteen samples. Around the middle a good pattern is white: low frequencies do not "
-                     "alias. Random samples are not white anywhere.",
+    tour.page.figure(tour.plot("spectra-16.png", panels_of(sixteen, spectrum_panel), 1080, 290),
+                     "The same for sixteen samples. The middle of a grid stands alone, and what aliases, aliases "
+                     "wholly. Sequences keep the nearest surroundings of the middle white, and spread the rest; "
+                     "random samples alias a little of everything.",
                      "bandlimit analyze --pattern halton:16 --plot halton16.svg", 1032);
 }
 
@@ -195,13 +198,13 @@ void leaning_part(Tour& tour) {
                       "26.565 degrees, whose tangent is 1/2, meet its samples two at a time and get 3 levels; "
                       "edges that lean the other way get all 5.",
                       grids);
-    constexpr int size = 40;
+    constexpr int size = 24;
     std::vector<Page::Tile> tiles;
     for (const SamplePattern& pattern : {d3d_pattern(4), rotated_pattern(4)})
         for (const double lean : {1.0, -1.0}) {
             const EdgeSweep sweep = sweep_edge(pattern.points, lean * sweep_degrees[3]);
             // A little more than 26.565 degrees, so that the edge passes pixels at every distance from their centres.
-            const Signal edge = step_edge({size, size}, {.angle = lean * 28});
+            const Signal edge = step_edge({size, size}, {.angle = lean * 29});
             const std::string file =
                 fmt::format("lean-{}-{}.png", pattern.name.substr(0, 3), lean > 0 ? "plus" : "minus");
             job::write_picture(tour.path(file), supersample(values_of(edge), 1, {0, 0, size, size},

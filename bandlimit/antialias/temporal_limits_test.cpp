@@ -16,8 +16,6 @@
 namespace bandlimit {
 namespace {
 
-constexpr std::string_view quality_presets[] = {"balanced", "fast", "sharp"};
-
 /// A scene for an output of width x height, as frames of an input that is `scale` times smaller.
 class Sequence {
 public:
