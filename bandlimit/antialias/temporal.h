@@ -119,6 +119,7 @@ public:
 
 private:
     friend class TemporalStep;
+    friend class TemporalState;  ///< temporal_state.h: what of this is stored
 
     Image<float> sums_, next_;
     Image<float> alpha_, next_alpha_;  ///< times weight; empty while frames have none
