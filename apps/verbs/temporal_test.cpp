@@ -86,63 +86,59 @@ TEST(TemporalVerb, ReportsWhatIsKnown) {
     EXPECT_EQ(single["measured_frames"], 0);
 }
 
+/// Writes NaN into the depth of a frame at (5, 7).
+void lose_depth(const std::string& path) {
+    ImageReader reader(path);
+    const ImageInfo info = reader.info();
+    AnyImage all = read_image(reader);
+    const auto depth = std::ranges::find(info.channel_names, "Depth.Z") - info.channel_names.begin();
+    std::get<Image<float>>(all).view()(5, 7, static_cast<int>(depth)) = std::numeric_limits<float>::quiet_NaN();
+    ImageTarget target = target_of(Depth::f32, info.width, info.height, info.channels());
+    target.channel_names = info.channel_names, target.transfer = Transfer::linear;
+    write_image(path, target, pixels(all));
+}
+
 // One line, the frames before, and nothing half-written.
 TEST(TemporalVerb, StopsAtAFrameThatIsBad) {
+    using Spoil = std::function<void(const Shell&)>;
+    const std::string bad = "in/f_103.exr";
+    const auto drawn = [&](const std::string& line) -> Spoil {
+        return [=](const Shell& shell) { ASSERT_TRUE(succeeds(shell(line))); };
+    };
+    const Spoil no_depth = [&](const Shell& shell) { lose_depth(shell / bad); };
+    const Spoil half = [&](const Shell& shell) {
+        const std::string bytes = bytes_of(shell / bad);
+        write_bytes(shell / bad, bytes.substr(0, bytes.size() / 2));
+    };
+    const Spoil empty = [&](const Shell& shell) { write_bytes(shell / bad, ""); };
+    const Spoil missing = [&](const Shell& shell) { std::filesystem::remove(shell / bad); };
+    const Spoil meta = [&](const Shell& shell) { write_bytes(shell / "meta.json", "{\"sequences\": {"); };
     struct Case {
-        std::string what, word;
-        std::function<void(const Shell&, const std::string&)> spoil;
+        std::string word;
+        Spoil spoil;
         int made;
     };
-    const auto pattern = [](const std::string& options) {
-        return [options](const Shell& shell, const std::string& file) {
-            ASSERT_TRUE(succeeds(shell("pattern mover " + file + " " + options)));
-        };
-    };
-    const auto with_pixels = [](const auto& change) {
-        return [change](const Shell& shell, const std::string& file) {
-            ImageReader reader(shell / file);
-            const ImageInfo info = reader.info();
-            AnyImage all = read_image(reader);
-            change(std::get<Image<float>>(all));
-            ImageTarget target = target_of(Depth::f32, info.width, info.height, info.channels());
-            target.channel_names = info.channel_names, target.transfer = Transfer::linear;
-            write_image(shell / file, target, pixels(all));
-        };
-    };
-    for (const Case& c : {
-             Case{"another size", "33 x 24", pattern("--size 33x24 --spp 1"), 3},
-             {"other channels", "channels",
-              [](const Shell&shell, const std::string&file) {
-                  ASSERT_TRUE(succeeds(shell("supersample mover " + file + " --size 32x24 --pattern regular:1")));
-              },
-              3},
-             {"a depth that is no number", "depth at 5, 7",
-              with_pixels([](Image<float>&all) { all.view()(5, 7, 4) = std::numeric_limits<float>::quiet_NaN(); }), 3},
-             {"cut short", "f_103.exr",
-              [](const Shell&shell, const std::string&file) {
-                  const std::string bytes = bytes_of(shell / file);
-                  write_bytes(shell / file, bytes.substr(0, bytes.size() / 2));
-              },
-              3},
-             {"empty", "f_103.exr", [](const Shell&shell, const std::string&file) { write_bytes(shell / file, ""); },
-              3},
-             {"missing", "frame 103 is missing",
-              [](const Shell&shell, const std::string&file) { std::filesystem::remove(shell / file); }, 0},
-             {"a broken description", "not JSON",
-              [](const Shell&shell, const std::string&) { write_bytes(shell / "meta.json", "{\"sequences\": {"); }, 0},
-         }) {
+    const std::vector<Case> cases{
+        {"33 x 24", drawn("pattern mover " + bad + " --size 33x24 --spp 1"), 3},
+        {"has the channels", drawn("supersample mover " + bad + " --size 32x24 --pattern regular:1"), 3},
+        {"depth at 5, 7", no_depth, 3},
+        {"f_103.exr", half, 3},
+        {"f_103.exr", empty, 3},
+        {"frame 103 is missing", missing, 0},
+        {"not JSON", meta, 0}};
+    for (const Case& c : cases) {
         const Shell shell(BANDLIMIT_PROGRAM);
         add_sequence(shell, "mover", "in", 6);
-        c.spoil(shell, "in/f_103.exr");
-        EXPECT_TRUE(fails(1, shell("temporal in out --meta meta.json --report r"), c.word)) << c.what;
+        c.spoil(shell);
+        EXPECT_TRUE(fails(1, shell("temporal in out --meta meta.json --report r"), c.word));
         std::set<std::string> made, wanted;
         if (std::filesystem::exists(shell / "out"))
             for (const auto& entry : std::filesystem::directory_iterator(shell / "out"))
                 made.insert(entry.path().filename());
         for (int i = 0; i < c.made; ++i) wanted.insert("f_10" + std::to_string(i) + ".exr");
         if (c.made > 0) wanted.insert(".bandlimit-temporal");
-        EXPECT_EQ(made, wanted) << c.what;
-        EXPECT_FALSE(std::filesystem::exists(shell / "r")) << c.what;
+        EXPECT_EQ(made, wanted) << c.word;
+        EXPECT_FALSE(std::filesystem::exists(shell / "r")) << c.word;
     }
 }
 

@@ -235,7 +235,7 @@ Run::Run(const TemporalJob& job, const Context& context) : job_(job), context_(c
     report_.in_width = source_.width, report_.in_height = source_.height;
     report_.width = width, report_.height = height;
     report_.conventions = source_.conventions, report_.jitter_length = source_.jitter_length;
-    report_.mip_bias = -std::log2(job.scale);
+    report_.mip_bias = std::log2(1 / job.scale);
     const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
     require_memory(pixels * (job.measures ? 8 + 4 + 4 + 6 + 17 : 8 + 4 + 4 + 6) * sizeof(float),
                    fmt::format("a history of {} x {} pixels", width, height));
