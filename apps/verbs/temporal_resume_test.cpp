@@ -126,8 +126,8 @@ TEST_F(TemporalResume, GoesOnAgainAndAgain) {
 
 TEST_F(TemporalResume, GoesOnAfterASignal) {
     if (is_sanitized) GTEST_SKIP() << "takes long to start";
-    const std::string line = "temporal glyphs out --size 48x32 --scale 2 --frames 60";
-    ASSERT_TRUE(succeeds(shell("temporal glyphs whole --size 48x32 --scale 2 --frames 60")));
+    const std::string line = "temporal glyphs out --size 48x32 --scale 2 --frames 40";
+    ASSERT_TRUE(succeeds(shell("temporal glyphs whole --size 48x32 --scale 2 --frames 40")));
     for (const int signal : {SIGINT, SIGKILL}) {
         fs::remove_all(shell / "out");
         const Outcome stopped =
@@ -180,7 +180,7 @@ TEST_F(TemporalResume, ChecksWhatItFinds) {
                                  good.substr(0, good.size() - 1),
                                  good + "x"};
     Random random(11);
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 5; ++i) {
         bad.push_back(good);
         bad.back()[static_cast<std::size_t>(random.integer(0, static_cast<int>(good.size()) - 1))] ^= 0x41;
     }
