@@ -81,6 +81,7 @@ std::string explanation(const CLI::ParseError& error, const CLI::App& cli) {
 Option Option::type_name(const std::string& name) const { return Option(option_->type_name(name)); }
 Option Option::description(const std::string& text) const { return Option(option_->description(text)); }
 Option Option::required() const { return Option(option_->required()); }
+Option Option::one_at_a_time() const { return Option(option_->allow_extra_args(false)); }
 Option Option::in_range(int least, int most) const { return Option(option_->check(between(least, most))); }
 Option Option::in_range(double least, double most) const { return Option(option_->check(between(least, most))); }
 Option Option::needs(Option other) const { return Option(option_->needs(other.option_)); }

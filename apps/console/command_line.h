@@ -30,6 +30,8 @@ public:
     Option type_name(const std::string& name) const;  ///< what stands for its value in the help
     Option description(const std::string& text) const;
     Option required() const;
+    /// For several strings: each time that it is given it takes one, and it may be given again.
+    Option one_at_a_time() const;
     /// For numbers: accepts only `least` to `most`, both included.
     Option in_range(int least, int most) const;
     Option in_range(double least, double most) const;

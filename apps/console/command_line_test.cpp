@@ -70,6 +70,18 @@ TEST(Options, SetTargetsOfEveryType) {
     EXPECT_EQ(doubled, 42);
 }
 
+TEST(Options, OneAtATimeLeavesTheRestToOthers) {
+    OneVerb v;
+    std::vector<std::string> set;
+    std::string in, out;
+    v.verb.add_option("--set", set, "").one_at_a_time();
+    v.verb.add_option("IN", in, "");
+    v.verb.add_option("OUT", out, "");
+    v.parse({"--set", "a=1", "in", "--set", "b=2", "out"});
+    EXPECT_EQ(set, (std::vector<std::string>{"a=1", "b=2"}));
+    EXPECT_EQ(in + out, "inout");
+}
+
 TEST(Options, RangesHoldTheirEnds) {
     int whole = 0;
     double real = 0;

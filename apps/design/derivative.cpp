@@ -8,8 +8,7 @@
 #include "apps/design/design.h"
 #include "apps/design/report.h"
 #include "bandlimit/analysis/response.h"
-#include "bandlimit/design/derivative.h"
-#include "bandlimit/design/fold.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
@@ -48,10 +47,7 @@ std::string ramp_line(const DerivativeDesign& d) {
 Design make(const Options& o) {
     const DerivativeDesign& d = o.design;
     Design design;
-    design.file = {.kind = "derivative", .factor = 1, .error = d.error, .taps = d.taps};
-    const auto reads = static_cast<double>(fold(d.taps).size());
-    design.file.cost = reads;
-    design.file.multiply_adds = reads;
+    design.file = job::taps_file(d);
     const double pi = std::numbers::pi;
     const bool is_taylor = o.options.optimal == Optimal::taylor;
     design.lines = {

@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "apps/design/design.h"
-#include "bandlimit/design/disk.h"
-#include "bandlimit/job/shaders.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
@@ -16,41 +15,21 @@ constexpr double largest_radius = 10'000;
 constexpr int longest_reach = 32'767;  // a taps.json holds no more
 
 struct Options {
-    int components = 2;
+    job::DiskJob job;
     std::string preset = "fit";
-    double radius = 0;  ///< in pixels; 0: not given
-    int reach = -1;     ///< in pixels; -1: not given
 };
 
-void check(const Options& o) {
-    const bool is_published = o.preset == "published";
-    if (!is_published && o.preset != "fit")
+void check(Options& o) {
+    if (o.preset != "published" && o.preset != "fit")
         throw UsageError(fmt::format("--preset: \"{}\" is not a preset; choose fit or published", o.preset));
-    if (o.components < 1 || o.components > most_disk_components)
-        throw UsageError(fmt::format("--components: {} phasors; choose 1 to {}", o.components, most_disk_components));
-    if (is_published && o.components > 2)
-        throw UsageError(
-            fmt::format("--components: the published sets have 1 and 2 phasors, not {}; choose one of "
-                        "them, or the preset fit",
-                        o.components));
-    if (o.reach >= 0 && o.radius == 0)
-        throw UsageError("--reach: how far weights extend depends on a radius; add --radius PX");
+    o.job.is_published = o.preset == "published";
+    job::check(o.job);
 }
 
-/// Components of a disc of radius 1, and how far their weights go, in radii: not below 0 where that is to be found.
-struct Disk {
-    Components components;
-    double reach = -1;
-    std::string origin;
-};
-
-Disk disk_of(const Options& o) {
-    if (o.preset == "fit") return {fit_disk(o.components), -1, "the nearest to a disc"};
-    const PublishedDisk published = published_disk(o.components);
-    Disk disk{fitted_to_disk(published.components, published.radius), published.reach / published.radius, {}};
-    disk.origin = fmt::format("as published, scaled from radius {:.4g} and to height {:.3g}", published.radius,
-                              disk.components[0].A / published.components[0].A);
-    return disk;
+std::string origin_of(const job::DiskReport& disk) {
+    if (disk.published_radius == 0) return "the nearest to a disc";
+    return fmt::format("as published, scaled from radius {:.4g} and to height {:.3g}", disk.published_radius,
+                       disk.published_scale);
 }
 
 std::string band_text(const DiskBand& band) {
@@ -58,15 +37,15 @@ std::string band_text(const DiskBand& band) {
                        band.leakage);
 }
 
-std::vector<std::string> lines_of(const Disk& disk, double error) {
+std::vector<std::string> lines_of(const job::DiskReport& disk) {
     const DiskProfile profile = disk_profile(disk.components);
     const DiskBand band = disk_band([&](double f) { return disk_response(disk.components, f); });
     std::vector<std::string> lines{fmt::format("disk          {} component{}, {}", disk.components.size(),
-                                               disk.components.size() == 1 ? "" : "s", disk.origin)};
+                                               disk.components.size() == 1 ? "" : "s", origin_of(disk))};
     for (const Component& c : disk.components)
         lines.push_back(fmt::format("component     a {:9.6f}   b {:9.6f}   A {:9.6f}   B {:9.6f}", c.a, c.b, c.A, c.B));
-    lines.push_back(
-        fmt::format("error         {:.5f}: the integral of (weight - disc)^2, relative to that of disc^2", error));
+    lines.push_back(fmt::format("error         {:.5f}: the integral of (weight - disc)^2, relative to that of disc^2",
+                                *disk.file.error));
     lines.push_back(fmt::format("edge          leaves 1 at {:.4f} and is 0 at {:.4f} radii; {:.3f} at the centre",
                                 profile.flat_until, profile.zero_from, profile.centre));
     lines.push_back(fmt::format("ringing       {:.3f} inside, {:.3f} outside, of a disc of height 1",
@@ -76,9 +55,9 @@ std::vector<std::string> lines_of(const Disk& disk, double error) {
     return lines;
 }
 
-std::vector<Panel> panels_of(const Disk& disk, double error) {
+std::vector<Panel> panels_of(const job::DiskReport& disk) {
     const std::string label = fmt::format("{} component{}, error {:.4f}", disk.components.size(),
-                                          disk.components.size() == 1 ? "" : "s", error);
+                                          disk.components.size() == 1 ? "" : "s", *disk.file.error);
     const Series disc{"disc", {0, 1, 1, 2}, {1, 1, 0, 0}};
     return {{"Profile",
              "radii from the centre",
@@ -92,33 +71,18 @@ std::vector<Panel> panels_of(const Disk& disk, double error) {
 }
 
 Design make(const Options& o) {
-    const Disk disk = disk_of(o);
+    const job::DiskReport disk = job::design_disk(o.job);
     Design design;
-    TapsFile& file = design.file;
-    file.kind = "disk";
-    file.components = disk.components;
-    file.error = disk_error(disk.components);
-    file.radius = o.radius > 0 ? o.radius : 1;  // without weights it is the unit of components
-    const double radius = o.radius > 0 ? o.radius : job::usual_disk_radius;
-    const int reach = o.reach >= 0      ? o.reach
-                      : disk.reach >= 0 ? static_cast<int>(std::lround(disk.reach * radius))
-                                        : reach_for(disk.components, radius);
-    const double taps = 2.0 * reach + 1;
-    // The first pass reads the picture and writes two for each component, of which the second reads all.
+    design.file = disk.file;
     design.intermediates = 2 * static_cast<int>(disk.components.size());
-    file.cost = taps * (1 + design.intermediates);
-    file.multiply_adds = taps * 2 * design.intermediates;
-
-    design.lines = lines_of(disk, *file.error);
+    design.lines = lines_of(disk);
     design.lines.push_back(fmt::format("weights       2 x {} products of {} weights for a radius of {:.6g} pixels{}",
-                                       disk.components.size(), taps, radius,
-                                       o.radius > 0 ? "" : "; --radius PX for another"));
-    if (o.radius > 0) {
-        file.terms = separable_terms(disk.components, radius, reach);
+                                       disk.components.size(), 2 * disk.reach + 1, disk.radius,
+                                       o.job.radius > 0 ? "" : "; --radius PX for another"));
+    if (o.job.radius > 0)
         design.lines.push_back(fmt::format("sum           {:.6g}, of {:.6g} that a disc of height 1 has",
-                                           sum(file.terms), std::numbers::pi * radius * radius));
-    }
-    design.panels = panels_of(disk, *file.error);
+                                           sum(disk.file.terms), std::numbers::pi * disk.radius * disk.radius));
+    design.panels = panels_of(disk);
     return design;
 }
 
@@ -130,17 +94,17 @@ void add_design_disk(const DesignVerb& verb) {
         verb, "disk", "A disc from separable filters: complex phasors times Gaussians, for depth of field",
         "bandlimit design disk --components 2 --radius 25 --plot disk.svg -o disk.json", [o] { check(*o); },
         [o](Console&) { return make(*o); });
-    app.add_option("--components", o->components,
+    app.add_option("--components", o->job.components,
                    "Phasors, 1 to 5; each needs two pictures between the passes. Default 2")
         .type_name("N");
     app.add_option("--preset", o->preset,
                    "fit: the nearest to a disc, the default; published: the parameters of Niemitalo 2011 for 1 or 2")
         .type_name("NAME");
-    app.add_option("--radius", o->radius,
+    app.add_option("--radius", o->job.radius,
                    "Radius of the disc in pixels: adds its weights, as terms. Without it, costs are printed for 25")
         .in_range(0.01, largest_radius)
         .type_name("PX");
-    app.add_option("--reach", o->reach,
+    app.add_option("--reach", o->job.reach,
                    "Weights left and right of the middle one; default: far enough that at most 1 % of the sum is lost; "
                    "for published, as in Garcia 2017")
         .in_range(0, longest_reach)

@@ -6,21 +6,15 @@
 #include <memory>
 
 #include "apps/design/design.h"
-#include "bandlimit/design/downsample.h"
 #include "bandlimit/design/fold.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
 
 struct Options {
-    RateGoal goal;
-    FetchOptions where;
-    int fetches = 0;  ///< 0: what the threshold leaves, or none
+    job::DownsampleJob job;
     bool curve = false;
-
-    /// Taps along one axis, rather than fetches.
-    bool is_one_dimensional() const { return where.taps > 0 && fetches == 0 && where.threshold == 0; }
-    bool is_folded() const { return where.taps > 0 && fetches == 0 && where.threshold > 0; }
 };
 
 constexpr const char* verb = "design downsample";
@@ -40,26 +34,11 @@ void set_weighting(RateGoal& goal, const std::string& text) {
     goal.pass_weight = weights[0], goal.stop_weight = weights[1];
 }
 
-int default_fetches(const Options& o) {
-    if (o.where.layout == FetchLayout::square) return o.goal.upsample ? 4 : 16;
-    if (o.goal.upsample) return 4;
-    return o.goal.factor % 2 == 0 ? 8 : 9;
-}
-
-/// The options with defaults filled in.
-Options completed(Options o) {
-    if (o.fetches == 0 && o.where.taps == 0) o.fetches = default_fetches(o);
-    return o;
-}
-
-void check(const Options& given) {
-    const Options o = completed(given);
-    if (o.curve && (o.is_one_dimensional() || o.is_folded()))
+void check(const Options& o) {
+    const job::DownsampleJob job = o.job.completed();
+    if (o.curve && (job.is_one_dimensional() || job.is_folded()))
         throw UsageError("--curve: lists numbers of fetches; give the largest with --fetches");
-    if (o.is_one_dimensional()) return check_taps(verb, o.where.taps, o.goal);
-    if (o.is_folded() && o.where.layout != FetchLayout::free)
-        throw UsageError("--layout: folded weights have a layout of their own; leave it out, or give --fetches too");
-    check_fetches(verb, o.is_folded() ? 1 : o.fetches, o.goal, o.where);
+    job::check(job, verb);
 }
 
 // ---- Describing
@@ -75,20 +54,19 @@ Responses responses_of(const PlacedWeights2D& weights) {
             [weights](double f) { return response(weights, f, f).real(); }};
 }
 
-std::string title_of(const Options& o, const std::string& what) {
-    std::string title = o.goal.upsample ? "upsample by 2: " : fmt::format("downsample by {}: ", o.goal.factor);
+std::string title_of(const RateGoal& goal, const std::string& what) {
+    std::string title = goal.upsample ? "upsample by 2: " : fmt::format("downsample by {}: ", goal.factor);
     title += what;
-    if (o.goal.pass_weight != o.goal.stop_weight)
-        title += fmt::format(", bands weighted {:g} to {:g}", o.goal.pass_weight, o.goal.stop_weight);
-    if (o.goal.max_gain) title += fmt::format(", gain at most {:g}", *o.goal.max_gain);
-    if (o.goal.non_negative) title += ", no negative weights";
+    if (goal.pass_weight != goal.stop_weight)
+        title += fmt::format(", bands weighted {:g} to {:g}", goal.pass_weight, goal.stop_weight);
+    if (goal.max_gain) title += fmt::format(", gain at most {:g}", *goal.max_gain);
+    if (goal.non_negative) title += ", no negative weights";
     return title;
 }
 
 /// Error and response, for people.
-void describe(Design& design, const Options& o, const PlacedWeights2D& whole) {
-    const BandError error = band_error(whole, o.goal.factor);
-    design.file.error = error.whole;
+void describe(Design& design, const RateGoal& goal, const PlacedWeights2D& whole) {
+    const BandError error = band_error(whole, goal.factor);
     design.lines.push_back(
         fmt::format("error         {:.6f}, the mean of |H - ideal|^2 over the band; pass band {:.5f}, stop band {:.5f}",
                     error.whole, error.pass, error.stop));
@@ -101,18 +79,18 @@ void describe(Design& design, const Options& o, const PlacedWeights2D& whole) {
         axis += cell(h.axis(i / 16.0));
         diagonal += cell(h.diagonal(i / 16.0));
     }
-    f += o.goal.upsample ? "  cycles per sample of the larger picture" : "  cycles per sample";
+    f += goal.upsample ? "  cycles per sample of the larger picture" : "  cycles per sample";
     design.lines.insert(design.lines.end(), {f, axis, diagonal});
 }
 
-Panel response_panel(const Options& o, const PlacedWeights2D& whole) {
+Panel response_panel(const RateGoal& goal, const PlacedWeights2D& whole) {
     const Responses h = responses_of(whole);
-    const double edge = 0.5 / o.goal.factor;
-    Panel panel{"response",
-                o.goal.upsample ? "frequency (cycles per sample of the larger picture)"
-                                : "frequency (cycles per source sample)",
-                "H",
-                {}};
+    const double edge = 0.5 / goal.factor;
+    Panel panel{
+        "response",
+        goal.upsample ? "frequency (cycles per sample of the larger picture)" : "frequency (cycles per source sample)",
+        "H",
+        {}};
     panel.series = {curve("axis (f, 0)", 0, 0.5, 200, h.axis),
                     curve("diagonal (f, f)", 0, 0.5, 200, h.diagonal),
                     {"ideal", {0, edge, edge, 0.5}, {1, 1, 0, 0}}};
@@ -142,44 +120,41 @@ Series errors_of(const std::vector<FetchDesign>& designs) {
 // ---- Making
 // ----------------------------------------------------------------------------------------------------------
 
-Design empty_design(const Options& o, double cost) {
+Design design_of(const job::DownsampleReport& report, const RateGoal& goal, const std::string& what) {
     Design design;
-    design.file.kind = o.goal.upsample ? "upsample" : "downsample";
-    design.file.factor = o.goal.upsample ? 1 : o.goal.factor;
-    design.file.cost = cost;
-    design.file.multiply_adds = cost;
-    design.enlarges = o.goal.upsample ? 2 : 1;
+    design.file = report.file;
+    design.enlarges = goal.upsample ? 2 : 1;
+    design.lines = {title_of(goal, what)};
+    describe(design, goal, report.whole);
     return design;
 }
 
 constexpr const char* mirrored_line =
     "outputs       for the output 1/4 texel right of and below a texel's centre; mirror it for the other three";
 
-Design make_taps(const Options& o) {
-    const Taps taps = downsample_taps(o.where.taps, o.goal);
-    const PlacedWeights whole = whole_filter(taps, o.goal);
-    Design design = empty_design(o, o.where.taps);
+Design make_taps(const job::DownsampleJob& job) {
+    const job::DownsampleReport report = job::design_downsample(job);
+    const RateGoal& goal = job.goal;
+    const Taps& taps = *report.file.taps;
+    const PlacedWeights whole = whole_filter(taps, goal);
+    Design design = design_of(report, goal, fmt::format("{} taps along one axis, then the other", job.where.taps));
     design.intermediates = 1;
-    design.file.taps = taps;
-    design.lines = {title_of(o, fmt::format("{} taps along one axis, then the other", o.where.taps))};
-    const PlacedWeights2D square(whole, whole);
-    describe(design, o, square);
-    design.lines.push_back(fmt::format("on one axis   error {:.6f}", band_error(whole, o.goal.factor).whole));
-    if (o.goal.upsample) design.lines.push_back(mirrored_line);
+    design.lines.push_back(fmt::format("on one axis   error {:.6f}", band_error(whole, goal.factor).whole));
+    if (goal.upsample) design.lines.push_back(mirrored_line);
     else design.lines.push_back(fmt::format("as fetches    {} linear reads per axis", fold(taps).size()));
     design.table = {"", fmt::format("{:>6} {:>10}", "sample", "weight")};
     for (std::size_t j = 0; j < taps.weights.size(); ++j)
         design.table.push_back(fmt::format("{:>6} {:>10.6f}", taps.first + static_cast<int>(j), taps.weights[j]));
-    const double error = *design.file.error;
     Series errors{"least error", {}, {}};
-    const int step = o.goal.upsample ? 1 : 2, most = std::max(16, o.where.taps);
-    for (int count = o.goal.upsample ? 1 : 2 + o.goal.factor % 2; count <= most; count += step) {
-        const PlacedWeights other = whole_filter(downsample_taps(count, o.goal), o.goal);
+    const int step = goal.upsample ? 1 : 2, most = std::max(16, job.where.taps);
+    for (int count = goal.upsample ? 1 : 2 + goal.factor % 2; count <= most; count += step) {
+        const PlacedWeights other = whole_filter(downsample_taps(count, goal), goal);
         errors.x.push_back(count);
-        errors.y.push_back(band_error(PlacedWeights2D(other, other), o.goal.factor).whole);
+        errors.y.push_back(band_error(PlacedWeights2D(other, other), goal.factor).whole);
     }
     design.panels = {Panel{"taps", "distance (samples)", "weight", {stems("", whole.first, whole.weights)}},
-                     response_panel(o, square), trade_panel("taps per axis", errors, o.where.taps, error)};
+                     response_panel(goal, report.whole),
+                     trade_panel("taps per axis", errors, job.where.taps, *report.file.error)};
     return design;
 }
 
@@ -196,66 +171,62 @@ Panel layout_panel(const Fetches& fetches) {
     return panel;
 }
 
-Design make_of_fetches(const Options& o, const FetchDesign& chosen, const std::vector<FetchDesign>& all,
-                       const std::string& what) {
-    Design design = empty_design(o, static_cast<double>(chosen.fetches.size()));
-    design.file.fetches = chosen.fetches;
-    design.lines = {title_of(o, what)};
-    const PlacedWeights2D whole = whole_filter(chosen.fetches, o.goal);
-    describe(design, o, whole);
-    if (o.goal.upsample) design.lines.push_back(mirrored_line);
+Design make_of_fetches(const job::DownsampleReport& report, const RateGoal& goal, const std::string& what) {
+    const Fetches& fetches = report.file.fetches;
+    Design design = design_of(report, goal, what);
+    if (goal.upsample) design.lines.push_back(mirrored_line);
     design.table = {"", fmt::format("{:>10} {:>10} {:>11}", "x", "y", "weight")};
-    for (const Fetch& f : chosen.fetches)
+    for (const Fetch& f : fetches)
         design.table.push_back(fmt::format("{:>10.6f} {:>10.6f} {:>11.8f}", f.x, f.y, f.weight));
-    design.panels = {layout_panel(chosen.fetches), response_panel(o, whole)};
-    if (!all.empty())
+    design.panels = {layout_panel(fetches), response_panel(goal, report.whole)};
+    if (!report.curve.empty())
         design.panels.push_back(
-            trade_panel("fetches", errors_of(all), static_cast<double>(chosen.fetches.size()), *design.file.error));
+            trade_panel("fetches", errors_of(report.curve), static_cast<double>(fetches.size()), *report.file.error));
     return design;
 }
 
-Design make_folded(const Options& o) {
-    const SparseWeights weights = downsample_weights(o.where.taps, o.where.threshold, o.goal);
-    const FetchDesign folded = downsample_folded(o.where.taps, o.where.threshold, o.goal);
+Design make_folded(const job::DownsampleJob& job) {
+    const job::DownsampleReport report = job::design_downsample(job);
+    const SparseWeights weights = downsample_weights(job.where.taps, job.where.threshold, job.goal);
     const auto kept = std::count_if(weights.optimized.weights.begin(), weights.optimized.weights.end(),
                                     [](double w) { return w != 0; });
-    Design design = make_of_fetches(
-        o, folded, {},
-        fmt::format("{} fetches for {} of {} x {} weights", folded.fetches.size(), kept, o.where.taps, o.where.taps));
-    const auto error = [&](const PlacedWeights2D& w) { return band_error(w, o.goal.factor).whole; };
+    Design design = make_of_fetches(report, job.goal,
+                                    fmt::format("{} fetches for {} of {} x {} weights", report.file.fetches.size(),
+                                                kept, job.where.taps, job.where.taps));
+    const auto error = [&](const PlacedWeights2D& w) { return band_error(w, job.goal.factor).whole; };
     design.lines.push_back(fmt::format(
         "weights       all {:.6f}; those of {:g} and more {:.6f}; optimised {:.6f}; as fetches {:.6f}",
-        error(weights.all), o.where.threshold, error(weights.dropped), error(weights.optimized), folded.error));
+        error(weights.all), job.where.threshold, error(weights.dropped), error(weights.optimized), *report.file.error));
     return design;
 }
 
-Design make_fetches(const Options& o) {
-    // The figure goes on to where more fetches gain little.
-    const int most = std::max(o.fetches, o.goal.upsample ? 9 : 20);
-    const std::vector<FetchDesign> all = downsample_curve(most, o.goal, o.where);
-    const auto more = std::find_if(
-        all.begin(), all.end(), [&](const FetchDesign& d) { return static_cast<int>(d.fetches.size()) > o.fetches; });
-    if (more == all.begin())
-        throw std::runtime_error(fmt::format("{}: no filter of {} fetches; pass more", verb, o.fetches));
-    const FetchDesign& chosen = *std::prev(more);
-    std::string what = fmt::format("{} bilinear fetches", chosen.fetches.size());
-    if (static_cast<int>(chosen.fetches.size()) != o.fetches) what += fmt::format(", as good as {}", o.fetches);
-    Design design = make_of_fetches(o, chosen, all, what);
-    if (!o.curve) return design;
-    design.table = {"", fmt::format("{:>8} {:>10} {:>10} {:>10} {:>8}", "fetches", "error", "pass", "stop", "gain")};
-    for (const FetchDesign& d : all) {
-        const PlacedWeights2D whole = whole_filter(d.fetches, o.goal);
-        const BandError e = band_error(whole, o.goal.factor);
-        design.table.push_back(fmt::format("{:>8} {:>10.6f} {:>10.6f} {:>10.6f} {:>8.4f}", d.fetches.size(), e.whole,
-                                           e.pass, e.stop, max_gain(whole)));
+/// Errors of all numbers of fetches, a line each.
+std::vector<std::string> curve_table(const std::vector<FetchDesign>& curve, const RateGoal& goal) {
+    std::vector<std::string> table{
+        "", fmt::format("{:>8} {:>10} {:>10} {:>10} {:>8}", "fetches", "error", "pass", "stop", "gain")};
+    for (const FetchDesign& d : curve) {
+        const PlacedWeights2D whole = whole_filter(d.fetches, goal);
+        const BandError e = band_error(whole, goal.factor);
+        table.push_back(fmt::format("{:>8} {:>10.6f} {:>10.6f} {:>10.6f} {:>8.4f}", d.fetches.size(), e.whole, e.pass,
+                                    e.stop, max_gain(whole)));
     }
+    return table;
+}
+
+Design make_fetches(const job::DownsampleJob& job, bool curve) {
+    const job::DownsampleReport report = job::design_downsample(job);
+    const int count = static_cast<int>(report.file.fetches.size());
+    std::string what = fmt::format("{} bilinear fetches", count);
+    if (count != job.fetches) what += fmt::format(", as good as {}", job.fetches);
+    Design design = make_of_fetches(report, job.goal, what);
+    if (curve) design.table = curve_table(report.curve, job.goal);
     return design;
 }
 
-Design make(const Options& given) {
-    const Options o = completed(given);
-    if (o.is_one_dimensional()) return make_taps(o);
-    return o.is_folded() ? make_folded(o) : make_fetches(o);
+Design make(const Options& o) {
+    const job::DownsampleJob job = o.job.completed();
+    if (job.is_one_dimensional()) return make_taps(job);
+    return job.is_folded() ? make_folded(job) : make_fetches(job, o.curve);
 }
 
 }  // namespace
@@ -266,34 +237,35 @@ void add_design_downsample(const DesignVerb& design) {
         design, "downsample", "Shrink by a whole factor, or double, with as little aliasing as possible",
         "bandlimit design downsample --fetches 12 --max-gain 1.05 --plot downsample.svg -o downsample.json",
         [o] { check(*o); }, [o](Console&) { return make(*o); });
-    app.add_option("--factor", o->goal.factor, "How many samples become one, 2 to 16; default 2").type_name("N");
-    app.add_flag("--upsample", o->goal.upsample, "Double instead: the filter of one of the four outputs per texel");
-    app.add_option("--taps", o->where.taps,
+    app.add_option("--factor", o->job.goal.factor, "How many samples become one, 2 to 16; default 2").type_name("N");
+    app.add_flag("--upsample", o->job.goal.upsample, "Double instead: the filter of one of the four outputs per texel");
+    app.add_option("--taps", o->job.where.taps,
                    "Alone: this many taps along each axis. With --fetches or --threshold: read within so many\n"
                    "texels a side")
         .in_range(1, 256)
         .type_name("N");
-    app.add_option("--fetches", o->fetches,
+    app.add_option("--fetches", o->job.fetches,
                    "This many bilinear reads, positions and weights optimised together; default 8 (9 for odd\n"
                    "factors, 4 to double, 16 in a square)")
         .in_range(1, 64)
         .type_name("N");
-    app.add_option("--threshold", o->where.threshold,
+    app.add_option("--threshold", o->job.where.threshold,
                    "With --taps N: drop those of the N x N best weights that are below it, optimise the others, and\n"
                    "fold them into fetches")
         .in_range(0.0, 1.0)
         .type_name("T");
     app.add_option_function<std::string>(
-           "--layout", [o](const std::string& s) { o->where.layout = parse_layout(s); },
+           "--layout", [o](const std::string& s) { o->job.where.layout = parse_layout(s); },
            "Where fetches may be: free (default), cross (around the output and along the axes) or square (rows and\n"
            "columns)")
         .type_name("free|cross|square");
     app.add_option_function<std::string>(
-           "--weighting", [o](const std::string& s) { set_weighting(o->goal, s); },
+           "--weighting", [o](const std::string& s) { set_weighting(o->job.goal, s); },
            "How squared errors in the pass band and in the stop band count; default 1,1")
         .type_name("PASS,STOP");
-    app.add_option("--max-gain", o->goal.max_gain, "Largest gain allowed at any frequency, e.g. 1.05").type_name("G");
-    app.add_flag("--non-negative", o->goal.non_negative, "No weights below 0");
+    app.add_option("--max-gain", o->job.goal.max_gain, "Largest gain allowed at any frequency, e.g. 1.05")
+        .type_name("G");
+    app.add_flag("--non-negative", o->job.goal.non_negative, "No weights below 0");
     app.add_flag("--curve", o->curve, "Print the error for each number of fetches instead of the fetches");
 }
 

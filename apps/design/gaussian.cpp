@@ -9,7 +9,7 @@
 #include "apps/design/design.h"
 #include "apps/design/report.h"
 #include "bandlimit/analysis/response.h"
-#include "bandlimit/design/gaussian.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
@@ -52,10 +52,7 @@ Design make(const Options& o) {
     const GaussianDesign& d = o.design;
     const double sigma = o.options.sigma;
     Design design;
-    design.file = {.kind = "gaussian", .factor = 1, .error = d.error, .taps = d.taps};
-    for (const LinearRead& read : d.reads) design.file.fetches.push_back({read.offset, 0, read.weight});
-    design.file.cost = 2.0 * static_cast<double>(d.reads.size());
-    design.file.multiply_adds = design.file.cost;
+    design.file = job::taps_file(d);
     design.intermediates = 1;
     design.lines = {fmt::format("gaussian      sigma {:.6g}, {}: {} linear reads of {} taps along each axis", sigma,
                                 o.form, d.reads.size(), d.taps.weights.size()),

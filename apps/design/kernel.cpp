@@ -7,7 +7,7 @@
 #include "apps/design/design.h"
 #include "apps/design/report.h"
 #include "bandlimit/analysis/kernel_spectrum.h"
-#include "bandlimit/design/kernel_fit.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
@@ -50,12 +50,7 @@ Panel spectrum_panel(const Options& o, const Kernel& kernel) {
 Design make(const Options& o) {
     const Kernel kernel = piecewise_kernel(o.fit.pieces, "kernel");
     Design design;
-    design.file = {.kind = "kernel", .factor = 1, .error = o.fit.error};
-    design.file.pieces = o.fit.pieces;
-    design.file.loss = o.fit.loss;
-    // Of an output at a phase of its own: all weights under the kernel, along both axes in turn.
-    design.file.cost = 2 * std::ceil(2 * kernel.radius);
-    design.file.multiply_adds = design.file.cost;
+    design.file = job::taps_file(o.fit);
     design.intermediates = 1;
     design.lines = {
         fmt::format("kernel        radius {:.6g}, degree {}, smoothness {}{}, to {}", kernel.radius, o.options.degree,

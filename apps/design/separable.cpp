@@ -8,21 +8,16 @@
 #include <numeric>
 
 #include "apps/design/design.h"
-#include "bandlimit/core/error.h"
-#include "bandlimit/design/noise_rank.h"
-#include "bandlimit/design/separable.h"
 #include "bandlimit/design/slanted.h"
+#include "bandlimit/job/designs.h"
 #include "bandlimit/job/weights.h"
-#include "bandlimit/kernel/low_rank.h"
 #include "bandlimit/kernel/shapes.h"
 
 namespace bandlimit::app {
 namespace {
 
 constexpr int largest_side = 512;   // decomposed in about three seconds
-constexpr int largest_rank = 64;    // that a taps.json holds
 constexpr int largest_slant = 128;  // of fit_slanted()
-constexpr double nearly_all = 0.999;
 
 struct Options {
     std::string kernel;
@@ -33,7 +28,7 @@ struct Options {
 };
 
 void check(const Options& o) {
-    int most = largest_rank;
+    int most = job::most_terms;
     if (job::is_shape_name(o.kernel)) most = std::min(most, job::shape_or_image(o.kernel, o.space, largest_side).width);
     if (o.rank && (*o.rank < 1 || *o.rank > most))
         throw UsageError(fmt::format("--rank: {}; pass 1 to {}", *o.rank, most));
@@ -43,71 +38,35 @@ void check(const Options& o) {
             throw UsageError(fmt::format("{}: {}; pass a number that is 0 or more", option, factor));
 }
 
-/// What is known before a rank is chosen.
-struct Analysis {
-    WeightGrid kernel;
-    Svd svd = {};
-    std::vector<double> energy = {}, sum = {};
-    int exact = 0, nearly = 0, above_noise = 0;
-
-    int count() const { return static_cast<int>(svd.values.size()); }
-    double missing(int rank) const { return std::max(0.0, 1 - energy[static_cast<std::size_t>(rank) - 1]); }
-};
-
-Analysis analyse(const Options& o) {
-    Analysis a{job::shape_or_image(o.kernel, o.space, largest_side)};
-    const bool is_dark = std::all_of(a.kernel.weights.begin(), a.kernel.weights.end(), [](double w) { return w == 0; });
-    if (is_dark) throw std::runtime_error(o.kernel + ": all samples are 0; a kernel needs at least one that is not");
-    a.svd = svd_of(a.kernel);
-    a.energy = cumulative_energy(a.svd.values);
-    a.sum = cumulative_sum(a.svd.values);
-    a.exact = numerical_rank(a.svd.values, a.kernel.height, a.kernel.width);
-    a.nearly = rank_for_energy(a.svd.values, nearly_all);
-    a.above_noise = rank_above_noise(a.svd.values, a.kernel.height, a.kernel.width);
-    return a;
-}
-
-/// Sum of squared differences over the sum of squares.
-double relative_error(const WeightGrid& weights, const WeightGrid& kernel) {
-    double missing = 0, all = 0;
-    for (std::size_t i = 0; i < kernel.weights.size(); ++i) {
-        missing += std::pow(weights.weights[i] - kernel.weights[i], 2);
-        all += kernel.weights[i] * kernel.weights[i];
-    }
-    return missing / all;
-}
-
-double multiply_adds(const Analysis& a, int rank) {
-    return static_cast<double>(rank) * (a.kernel.width + a.kernel.height);
-}
+int count(const job::SeparableReport& r) { return static_cast<int>(r.svd.values.size()); }
 
 // ---- Lines
 
 std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
 
-std::vector<std::string> value_lines(const Analysis& a, int rank) {
+std::vector<std::string> value_lines(const job::SeparableReport& r) {
     std::vector<std::string> lines{"rank  singular value    energy    sum of values"};
-    const int last = std::min(a.count(), std::max({rank, std::min(a.nearly, 16), 4}));
-    for (int r = 1; r <= last; ++r) {
-        const auto i = static_cast<std::size_t>(r) - 1;
+    const int last = std::min(count(r), std::max({r.rank(), std::min(r.nearly, 16), 4}));
+    for (int n = 1; n <= last; ++n) {
+        const auto i = static_cast<std::size_t>(n) - 1;
         lines.push_back(
-            fmt::format("{:>4}  {:>14.6g} {:>9} {:>16}", r, a.svd.values[i], percent(a.energy[i]), percent(a.sum[i])));
+            fmt::format("{:>4}  {:>14.6g} {:>9} {:>16}", n, r.svd.values[i], percent(r.energy[i]), percent(r.sum[i])));
     }
     return lines;
 }
 
-std::string kernel_line(const Options& o, const Analysis& a) {
-    const double sum = std::accumulate(a.kernel.weights.begin(), a.kernel.weights.end(), 0.0);
-    std::string line = fmt::format("kernel        {}: {} x {}, sum {:.6g}, rank {}", o.kernel, a.kernel.width,
-                                   a.kernel.height, sum, a.exact);
+std::string kernel_line(const Options& o, const WeightGrid& kernel, const job::SeparableReport& r) {
+    const double sum = std::accumulate(kernel.weights.begin(), kernel.weights.end(), 0.0);
+    std::string line = fmt::format("kernel        {}: {} x {}, sum {:.6g}, rank {}", o.kernel, kernel.width,
+                                   kernel.height, sum, r.exact);
     if (!job::is_shape_name(o.kernel)) line += fmt::format("; codes read as {}, the largest as 1", name_of(o.space));
     return line;
 }
 
-std::string rank_line(const Options& o, const Analysis& a) {
-    std::string line = fmt::format("rank          {} holds 99.9 % of the energy", a.nearly);
+std::string rank_line(const Options& o, const job::SeparableReport& r) {
+    std::string line = fmt::format("rank          {} holds 99.9 % of the energy", r.nearly);
     if (!job::is_shape_name(o.kernel))
-        line += fmt::format("; {} suggested: the rank above the noise of a measured kernel", a.above_noise);
+        line += fmt::format("; {} suggested: the rank above the noise of a measured kernel", r.above_noise);
     return line;
 }
 
@@ -135,30 +94,31 @@ bool follows_grid(const Step& step) { return std::abs(step.x * step.y) < 1e-6; }
 
 /// The axes of a long kernel, and two passes along others than rows and columns where those are cheaper than as many
 /// terms as come as near.
-std::vector<std::string> oriented_lines(const Analysis& a, int rank) {
-    const PrincipalAxes axes = principal_axes(a.kernel);
+std::vector<std::string> oriented_lines(const WeightGrid& kernel, const job::SeparableReport& r) {
+    const PrincipalAxes axes = principal_axes(kernel);
     std::vector<std::string> lines;
     if (axes.along <= 1.01 * axes.across) return lines;
     lines.push_back(
         fmt::format("axes          {:.2f} samples along {:.1f} degrees, {:.2f} across: {:.2f} times as long",
                     axes.along, axes.degrees, axes.across, axes.along / std::max(axes.across, 1e-9)));
-    if (std::max(a.kernel.width, a.kernel.height) > largest_slant) return lines;
-    const auto [passes, along_steps, error] = fit_slanted(a.kernel);
+    if (std::max(kernel.width, kernel.height) > largest_slant) return lines;
+    const auto [passes, along_steps, error] = fit_slanted(kernel);
+    const double missing = std::max(0.0, 1 - r.energy[static_cast<std::size_t>(r.rank()) - 1]);
     if (follows_grid(passes.first.step) && follows_grid(passes.second.step)) return lines;
     const auto as_near =
-        std::find_if(a.energy.begin(), a.energy.end(), [&, limit = 1 - error](double held) { return held >= limit; });
-    const int terms = std::min(a.count(), 1 + static_cast<int>(as_near - a.energy.begin()));
+        std::find_if(r.energy.begin(), r.energy.end(), [&, limit = 1 - error](double held) { return held >= limit; });
+    const int terms = std::min(count(r), 1 + static_cast<int>(as_near - r.energy.begin()));
     const auto cost = static_cast<double>(passes.first.taps.weights.size() + passes.second.taps.weights.size());
-    if (cost >= multiply_adds(a, terms) || error > std::max(0.01, a.missing(rank))) return lines;
+    if (cost >= job::multiply_adds(kernel, terms) || error > std::max(0.01, missing)) return lines;
     lines.push_back(
         fmt::format("two passes    at a slant come to the error {:.3g} in {} linear reads; rows and columns need {} "
                     "terms for it, {} multiply-adds",
-                    error, cost, terms, multiply_adds(a, terms)));
+                    error, cost, terms, job::multiply_adds(kernel, terms)));
     lines.push_back("              " + pass_text(passes.first));
     lines.push_back("              " + pass_text(passes.second));
     lines.push_back(
         fmt::format("              along these steps 99.9 % of the energy have rank {}, along rows and columns {}",
-                    along_steps, a.nearly));
+                    along_steps, r.nearly));
     return lines;
 }
 
@@ -174,80 +134,64 @@ Panel map_panel(const std::string& title, const WeightGrid& grid, double peak) {
     return {title, "column" + unit, "row" + unit, {}, {}, {}, map};
 }
 
-std::vector<Panel> panels_of(const Analysis& a, const WeightGrid& weights, int rank) {
-    const int last = std::min(a.count(), std::max({rank + 2, a.nearly + 2, 8}));
+std::vector<Panel> panels_of(const WeightGrid& kernel, const job::SeparableReport& r) {
+    const int last = std::min(count(r), std::max({r.rank() + 2, r.nearly + 2, 8}));
     const auto series = [&](const char* label, Series::Style style, auto value) {
         Series s{label, {}, {}, style};
-        for (int r = 1; r <= last; ++r) {
-            s.x.push_back(r);
-            s.y.push_back(value(static_cast<std::size_t>(r) - 1));
+        for (int n = 1; n <= last; ++n) {
+            s.x.push_back(n);
+            s.y.push_back(value(static_cast<std::size_t>(n) - 1));
         }
         return s;
     };
     Panel values{"Singular values", "rank", "share", {}, Range{0.5, last + 0.5}, Range{0, 1.05}};
     values.series = {
-        series("value / first", Series::Style::stems, [&](std::size_t i) { return a.svd.values[i] / a.svd.values[0]; }),
-        series("energy", Series::Style::line, [&](std::size_t i) { return a.energy[i]; }),
-        series("sum", Series::Style::line, [&](std::size_t i) { return a.sum[i]; })};
-    WeightGrid difference = weights;
-    for (std::size_t i = 0; i < difference.weights.size(); ++i) difference.weights[i] -= a.kernel.weights[i];
+        series("value / first", Series::Style::stems, [&](std::size_t i) { return r.svd.values[i] / r.svd.values[0]; }),
+        series("energy", Series::Style::line, [&](std::size_t i) { return r.energy[i]; }),
+        series("sum", Series::Style::line, [&](std::size_t i) { return r.sum[i]; })};
+    WeightGrid difference = r.weights;
+    for (std::size_t i = 0; i < difference.weights.size(); ++i) difference.weights[i] -= kernel.weights[i];
     const auto peak_of = [](const WeightGrid& g) {
         double peak = 0;
         for (const double w : g.weights) peak = std::max(peak, std::abs(w));
         return peak;
     };
-    const double peak = peak_of(a.kernel);
-    return {values, map_panel("Kernel", a.kernel, peak),
-            map_panel(fmt::format("Sum of {} separable", rank), weights, peak),
+    const double peak = peak_of(kernel);
+    return {values, map_panel("Kernel", kernel, peak),
+            map_panel(fmt::format("Sum of {} separable", r.rank()), r.weights, peak),
             map_panel("Difference", difference, std::max(peak_of(difference), 1e-12 * peak))};
 }
 
 // ---- Making it
 
 Design make(const Options& o, Console& console) {
-    const Analysis a = analyse(o);
-    const int wanted = o.rank.value_or(std::min(largest_rank, job::is_shape_name(o.kernel) ? a.nearly : a.above_noise));
-    if (wanted > a.count())
-        throw std::runtime_error(fmt::format("{}: rank {} of {} x {} samples; pass at most {}", o.kernel, wanted,
-                                             a.kernel.width, a.kernel.height, a.count()));
-    Terms terms = low_rank(a.svd, wanted);
-    const int rank = static_cast<int>(terms.size());
-
+    job::SeparableJob job{.kernel = job::shape_or_image(o.kernel, o.space, largest_side),
+                          .name = o.kernel,
+                          .is_measured = !job::is_shape_name(o.kernel),
+                          .rank = o.rank,
+                          .loss = o.loss,
+                          .optimise = o.optimise};
+    const job::SeparableReport report = job::design_separable(job, context_of(console, {}));
+    const WeightGrid& kernel = job.kernel;
     Design design;
-    design.lines = {kernel_line(o, a), rank_line(o, a)};
+    design.file = report.file;
+    design.lines = {kernel_line(o, kernel, report), rank_line(o, report)};
     const auto add = [&](const std::vector<std::string>& more) {
         design.lines.insert(design.lines.end(), more.begin(), more.end());
     };
-    add(value_lines(a, rank));
-    double loss = separable_loss(a.kernel, expanded(terms), o.loss);
-    if (o.optimise) {
-        Progress progress(console, "optimise", 1);
-        const SeparableFit fit =
-            optimise_separable(a.kernel, terms, o.loss, [&](double done) { progress.advance_to(done); });
-        design.lines.push_back(
-            fmt::format("optimised     from a loss of {:.6f} in {} iterations, with non-negative {:g}, keep-zeros {:g}",
-                        fit.start_loss, fit.iterations, o.loss.non_negative, o.loss.keep_zeros));
-        terms = fit.terms;
-        loss = fit.loss;
-    }
-    const WeightGrid weights = expanded(terms);
-    const double error = relative_error(weights, a.kernel);
-    design.lines.push_back(fmt::format("terms         {}: relative error {:.6g}, loss {:.6f}", rank, error, loss));
-    design.lines.push_back(artefact_line(weights, a.kernel));
-    add(oriented_lines(a, rank));
-    if (a.kernel.width % 2 == 0 || a.kernel.height % 2 == 0)
+    add(value_lines(report));
+    if (report.optimised)
+        design.lines.push_back(fmt::format(
+            "optimised     from a loss of {:.6f} in {} iterations, with non-negative {:g}, keep-zeros {:g}",
+            report.optimised->start_loss, report.optimised->iterations, o.loss.non_negative, o.loss.keep_zeros));
+    design.lines.push_back(
+        fmt::format("terms         {}: relative error {:.6g}, loss {:.6f}", report.rank(), report.error, report.loss));
+    design.lines.push_back(artefact_line(report.weights, kernel));
+    add(oriented_lines(kernel, report));
+    if (kernel.width % 2 == 0 || kernel.height % 2 == 0)
         design.lines.push_back("placement     an even size has no middle sample: pictures shift by half a sample");
-
-    design.file.kind = "separable";
-    design.file.error = error;
-    design.file.loss = loss;
-    design.file.singular_values = a.svd.values;
-    design.file.terms = terms;
-    // The first pass reads along rows once for all terms; the second reads what it made of each.
-    design.file.cost = a.kernel.width + static_cast<double>(rank) * a.kernel.height;
-    design.file.multiply_adds = multiply_adds(a, rank);
-    design.intermediates = rank;
-    design.panels = panels_of(a, weights, rank);
+    design.intermediates = report.rank();
+    design.panels = panels_of(kernel, report);
     return design;
 }
 

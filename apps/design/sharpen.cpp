@@ -7,8 +7,7 @@
 #include "apps/design/design.h"
 #include "apps/design/report.h"
 #include "bandlimit/analysis/response.h"
-#include "bandlimit/design/fold.h"
-#include "bandlimit/design/sharpen.h"
+#include "bandlimit/job/designs.h"
 
 namespace bandlimit::app {
 namespace {
@@ -31,9 +30,7 @@ void check(Options& o) {
 Design make(const Options& o) {
     const SharpenDesign& d = o.design;
     Design design;
-    design.file = {.kind = "sharpen", .factor = 1, .error = d.error, .taps = d.taps};
-    design.file.cost = 2.0 * static_cast<double>(fold(d.taps).size());
-    design.file.multiply_adds = design.file.cost;
+    design.file = job::taps_file(d);
     design.intermediates = 1;
     const auto kernel_at = [&o](double f) { return std::abs(kernel_response(o.kernel, o.options.phase, f)); };
     const auto gain_at = [&d](double f) { return response(d.taps, f).real(); };

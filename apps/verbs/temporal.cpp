@@ -10,6 +10,7 @@
 #include "apps/console/common.h"
 #include "apps/page/page.h"
 #include "apps/verbs/temporal_page.h"
+#include "bandlimit/antialias/temporal_options.h"
 #include "bandlimit/job/command.h"
 #include "bandlimit/job/temporal.h"
 #include "bandlimit/scene/scene.h"
@@ -22,6 +23,7 @@ using nlohmann::ordered_json;
 struct Options {
     job::TemporalJob job;
     std::string size, report, units, direction, y_axis, jitter = "halton";
+    std::vector<std::string> set;  ///< NAME=VALUE
     Parallel parallel;
     bool json = false;
 };
@@ -37,10 +39,30 @@ Value one_of(const std::string& option, const std::string& text,
     throw UsageError(fmt::format("{}: \"{}\" is unknown; choose one of: {}", option, text, list));
 }
 
+/// The options of a preset, changed by what --set says.
+TemporalOptions options_of(const Options& o) {
+    TemporalOptions options = temporal_preset(o.job.preset);
+    for (const std::string& item : o.set) {
+        const std::size_t equals = item.find('=');
+        if (equals == std::string::npos)
+            throw UsageError(fmt::format("--set: \"{}\" has no value; pass e.g. still-frames=32", item));
+        set_option(options, item.substr(0, equals), item.substr(equals + 1));
+    }
+    return options;
+}
+
+/// The lines of --help that say what --set takes.
+std::string help_of_set() {
+    std::string text = "Change one option of the preset; may be repeated. NAME is one of";
+    for (const TemporalOptionInfo& info : temporal_option_infos())
+        text += fmt::format("\n  {:<20} {}: {}", info.name, info.meaning, info.values);
+    return text;
+}
+
 job::TemporalJob job_of(const Options& o) {
     using Units = job::MotionConvention::Units;
     job::TemporalJob job = o.job;
-    job.options = temporal_preset(job.preset);
+    job.options = options_of(o);
     job.jitter = parse_jitter(o.jitter);
     job.measures = !o.report.empty();
     if (!o.size.empty()) {
@@ -174,6 +196,7 @@ void add_temporal(Program& program) {
                     "balanced (default), fast, sharp; reference: supersampling over time, without rejection;\n"
                     "per-frame and input-sized: the plain rules, to compare with")
         .type_name("P");
+    verb.add_option("--set", o->set, help_of_set()).type_name("NAME=VALUE").one_at_a_time();
     verb.add_option("--frames", o->job.frames, "How many frames; default all, of scenes a period of the jitter")
         .type_name("N");
     verb.add_option("--jitter", o->jitter, "Jitter of scenes: halton (default), r2, rotated or sobol").type_name("J");

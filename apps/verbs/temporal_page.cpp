@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "apps/console/common.h"
@@ -31,7 +32,7 @@ int shown_width(int width, int at_least) { return width * std::max(1, at_least /
 void add_convergence(Page& page, const std::string& folder, const job::TemporalJob& job, const TemporalReport& r) {
     Series psnr{job.preset, {}, {}};
     for (const TemporalFrameReport& f : r.frames)
-        if (f.psnr) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
+        if (f.psnr && std::isfinite(*f.psnr)) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
     if (psnr.x.empty()) return;
     page.section("Convergence", "PSNR to the truth in linear light, clamped to [0, 1], frame by frame.", {});
     draw({{"Distance to the truth", "frame", "PSNR in dB", {psnr}}}, folder + "/psnr.svg", 640, 400);

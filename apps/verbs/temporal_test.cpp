@@ -159,6 +159,21 @@ TEST(TemporalVerb, ReadsASequenceAndItsReference) {
     EXPECT_EQ(bytes_of(shell / "one/f_111.exr"), bytes_of(shell / "two/f_111.exr"));
 }
 
+// Colour is stored multiplied by alpha, in the input as in the output: glass stays as it is.
+TEST(TemporalVerb, KeepsWhatIsTransparent) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    std::filesystem::create_directory(shell / "in");
+    Image<float> glass(8, 6, 4);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 8; ++x)
+            for (int c = 0; c < 4; ++c) glass.view()(x, y, c) = c == 3 ? 0.5f : 0.25f;
+    job::write_picture(shell / "in/f_0.exr", glass.view(), Depth::f32);
+    ASSERT_TRUE(succeeds(shell("temporal in out --quiet")));
+    const Image<float> before = job::read_picture(shell / "in/f_0.exr"),
+                       after = job::read_picture(shell / "out/f_0.exr");
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(after.view()(3, 3, c), before.view()(3, 3, c), 1e-6) << c;
+}
+
 // A sign that is wrong sends history the wrong way.
 TEST(TemporalVerb, MotionHasADirection) {
     const Shell shell(BANDLIMIT_PROGRAM);
@@ -196,6 +211,10 @@ TEST(TemporalVerb, RefusesWhatDoesNotFit) {
              {2, "temporal in out --scale 5", "--scale: "},
              {2, "temporal in out --scale nan", "--scale"},
              {2, "temporal in out --preset ultra", "balanced"},
+             {2, "temporal in out --set speed=1", "still-frames"},
+             {2, "temporal in out --set alpha=2", "alpha = 2"},
+             {2, "temporal in out --set alpha", "no value"},
+             {2, "temporal in out --set kernel=jinc2", "separable"},
              {2, "temporal in out --conventions maya", "blender"},
              {2, "temporal in out --motion-units inches", "pixels"},
              {2, "temporal in out --size 8x8", "--size"},

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "bandlimit/antialias/frame_gather.h"
-#include "bandlimit/antialias/history_sampler.h"
-#include "bandlimit/antialias/temporal_input.h"
+#include "bandlimit/antialias/history_weights.h"
+#include "bandlimit/antialias/temporal_rows.h"
 #include "bandlimit/core/error.h"
 
 namespace bandlimit {
 namespace {
 
-constexpr int band_rows = 32;
-constexpr float velocity_tolerance = 0.5f;  // input pixels per frame
-constexpr float full_doubt_speed = 0.1f;    // output pixels per frame; what is slower is doubted less
+constexpr int band_rows = 16;  // what they are made of stays in the second cache
 
 constexpr std::array<std::string_view, 6> preset_names{"fast",      "balanced",  "sharp",
                                                        "reference", "per-frame", "input-sized"};
@@ -61,6 +60,11 @@ void check_frame(const TemporalFrame& frame, int width, int height) {
 std::string_view name_of(HistoryKernel kernel) {
     constexpr std::array<std::string_view, 5> names{"bilinear", "catmull-rom", "catmull-rom5", "lanczos2", "bspline"};
     return names[static_cast<std::size_t>(kernel)];
+}
+
+std::string_view name_of(Accumulation rule) {
+    constexpr std::array<std::string_view, 3> names{"weighted", "per-frame", "input-sized"};
+    return names[static_cast<std::size_t>(rule)];
 }
 
 std::string_view name_of(Rectification rectification) {
@@ -108,8 +112,20 @@ TemporalOptions temporal_preset(std::string_view name) {
 
 TemporalHistory::TemporalHistory(int width, int height) {
     if (width < 1 || height < 1) fail("TemporalHistory: ", width, " x ", height, " pixels; pass at least 1 x 1");
-    sums_ = Image<float>(width, height, 4, Layout::interleaved);
+    now_.sums = Image<float>(width, height, 4, Layout::interleaved);
 }
+
+TemporalHistory TemporalHistory::clone() const {
+    TemporalHistory copy(width(), height());
+    copy.now_ = {now_.sums.clone(), now_.transparency.clone(), now_.surface.clone()};
+    copy.jitter_ = jitter_, copy.exposure_ = exposure_, copy.frames_ = frames_;
+    return copy;
+}
+
+/// What a thread needs of the frame for some rows of the output.
+struct TemporalBand {
+    Image<float> finite, gathered, guide, box;
+};
 
 /// One frame on its way into the history.
 class TemporalStep {
@@ -118,288 +134,132 @@ public:
                  const Parallel& parallel, const TemporalDebug& debug)
         : history_(history),
           frame_(frame),
-          options_(options),
-          out_(out),
           parallel_(parallel),
-          debug_(debug),
-          width_(history.width()),
-          height_(history.height()),
-          scale_x_(static_cast<float>(width_) / static_cast<float>(frame.color.width)),
-          scale_y_(static_cast<float>(height_) / static_cast<float>(frame.color.height)),
+          in_width_(frame.color.width),
+          in_height_(frame.color.height),
           has_history_(history.frames_ > 0 && !frame.is_cut),
-          input_(temporal_input(frame, options, parallel)),
-          gather_(frame_gather(options.kernel, options.rule == Accumulation::input_sized, frame.color.width,
-                               frame.color.height, width_, height_, frame.jitter)) {
+          gather_(frame_gather(options.kernel, options.rule == Accumulation::input_sized, in_width_, in_height_,
+                               history.width(), history.height(), frame.jitter)),
+          pass_{.frame = frame,
+                .options = options,
+                .gather = gather_,
+                .history_weights = history_weights(options.history_kernel),
+                .surface_jitter = history.jitter_,
+                .surface_exposure = history.exposure_,
+                .out = out,
+                .debug = debug} {
         // A kernel with negative weights may gather samples that nearly cancel: nothing is divided by that.
         const bool may_cancel = *std::min_element(gather_.x.begin(), gather_.x.end()) < 0 ||
                                 options.kernel.value(options.kernel.radius * 0.75) < 0;
-        least_weight_ = may_cancel ? 0.25f : 0.02f;
-        enough_weight_ = may_cancel ? 0.5f : 0.3f;
+        pass_.least_weight = may_cancel ? 0.25f : 0.02f;
+        pass_.enough_weight = may_cancel ? 0.5f : 0.3f;
     }
 
     void run() {
-        if (history_.next_.width() != width_) history_.next_ = Image<float>(width_, height_, 4, Layout::interleaved);
-        if (has_alpha() && history_.next_alpha_.width() != width_) {
-            history_.alpha_ = Image<float>(width_, height_);
-            history_.next_alpha_ = Image<float>(width_, height_);
-        }
-        parallel_for((height_ + band_rows - 1) / band_rows, 1, parallel_,
+        make_room();
+        const int height = history_.height(), bands = (height + band_rows - 1) / band_rows;
+        // Ranges of several bands share their memory.
+        parallel_for(bands, std::max(1, bands / (2 * parallel_.count())), parallel_,
                      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                         for (std::ptrdiff_t band = begin; band < end; ++band)
-                             run_band(static_cast<int>(band) * band_rows);
+                         TemporalBand band;
+                         for (std::ptrdiff_t i = begin; i < end; ++i)
+                             run_band(band, static_cast<int>(i) * band_rows,
+                                      std::min(static_cast<int>(i + 1) * band_rows, height));
                      });
         keep();
     }
 
 private:
-    bool has_alpha() const { return frame_.color.channels == 4; }
-
-    void run_band(int first) {
-        const int rows = std::min(band_rows, height_ - first);
-        Image<float> gathered(width_, rows, frame_.color.channels, Layout::interleaved);
-        gather_.rows.run({input_.color.view(), 0, {}}, {gathered.view(), first, {}, {}}, {1});
-        for (int y = first; y < first + rows; ++y)
-            for (int x = 0; x < width_; ++x) step(x, y, &gathered.view()(x, y - first));
+    /// The next history, and the views of both.
+    void make_room() {
+        const int width = history_.width(), height = history_.height();
+        auto& [sums, transparency, surface] = history_.next_;
+        if (sums.width() != width) sums = Image<float>(width, height, 4, Layout::interleaved);
+        if (is_transparent()) transparency = Image<float>(width, height);
+        else transparency = {};
+        if (frame_.depth.width == 0) surface = {};
+        else if (surface.width() != in_width_ || surface.height() != in_height_)
+            surface = Image<float>(in_width_, in_height_, 4, Layout::interleaved);
+        pass_.next_sums = sums.view();
+        pass_.next_transparency = transparency.view();
+        pass_.next_surface = surface.view();
+        if (!has_history_) return;
+        pass_.sums = std::as_const(history_.now_.sums).view();
+        pass_.transparency = std::as_const(history_.now_.transparency).view();
+        pass_.surface = std::as_const(history_.now_.surface).view();
     }
 
-    /// What the history holds of what is at an output pixel now.
-    struct Past {
-        HistorySample sample;
-        float alpha = 0;                   ///< times the weight of the sample
-        float motion_x = 0, motion_y = 0;  ///< in output pixels
-        float speed = 0;
-        float mismatch = 1;  ///< 1 where it is of something else
-    };
-
-    Past past_of(int x, int y, int near_x, int near_y) const {
-        Past past;
-        const float* const guide = &input_.guide.view()(near_x, near_y);
-        past.motion_x = guide[0] * scale_x_, past.motion_y = guide[1] * scale_y_;
-        past.speed = std::hypot(past.motion_x, past.motion_y);
-        const float at_x = static_cast<float>(x) + past.motion_x, at_y = static_cast<float>(y) + past.motion_y;
-        if (!has_history_ || !(at_x >= -0.5f && at_y >= -0.5f && at_x <= static_cast<float>(width_) - 0.5f &&
-                               at_y <= static_cast<float>(height_) - 0.5f))
-            return past;
-        past.sample = sample_history(history_.sums_.view(), options_.history_kernel, x, y, past.motion_x, past.motion_y,
-                                     least_weight_);
-        if (has_alpha()) past.alpha = alpha_at(x, y, past.motion_x, past.motion_y);
-        past.mismatch = mismatch_of_surface(guide, (at_x + 0.5f) / scale_x_, (at_y + 0.5f) / scale_y_);
-        return past;
+    /// Whether anything is, or was.
+    bool is_transparent() const {
+        const View<const float>& color = frame_.color;
+        if (color.channels == 3) return false;
+        if (has_history_ && history_.now_.transparency.width() > 0) return true;
+        std::atomic<bool> found = false;
+        parallel_for(color.height, band_rows, parallel_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+            for (int y = static_cast<int>(begin); y < end && !found; ++y)
+                for (int x = 0; x < color.width; ++x)
+                    if (color(x, y, 3) != 1) found = true;
+        });
+        return found;
     }
 
-    /// Alpha times weight, between the four samples about sample (x, y) moved by (dx, dy).
-    float alpha_at(int x, int y, float dx, float dy) const {
-        const float fx = std::floor(dx), fy = std::floor(dy), tx = dx - fx, ty = dy - fy;
-        float sum = 0;
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i)
-                sum += history_.alpha_.view()(std::clamp(x + static_cast<int>(fx) + i, 0, width_ - 1),
-                                              std::clamp(y + static_cast<int>(fy) + j, 0, height_ - 1)) *
-                       (i == 0 ? 1 - tx : tx) * (j == 0 ? 1 - ty : ty);
-        return sum;
-    }
-
-    /// How much what the last frame saw about a place, in input pixels, is something else than what is there now: by how
-    /// little the depth of any of the four samples about it is like that of `guide`, or by the depth of the nearest
-    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.)
-    float mismatch_of_surface(const float* guide, float x, float y) const {
-        const View<const float> before = std::as_const(history_.surface_).view();
-        if (before.width == 0 || !std::isfinite(options_.depth_tolerance)) return 0;
-        x *= static_cast<float>(before.width) / static_cast<float>(frame_.color.width);
-        y *= static_cast<float>(before.height) / static_cast<float>(frame_.color.height);
-        x -= 0.5f + static_cast<float>(history_.jitter_.x), y -= 0.5f + static_cast<float>(history_.jitter_.y);
-        const float left = std::floor(x), top = std::floor(y);
-        float least = 3e38f;
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i)
-                least = std::min(
-                    least, mismatch_of_depth(*sample_before(left + static_cast<float>(i), top + static_cast<float>(j)),
-                                             guide[2]));
-        const float* const nearest = sample_before(std::floor(x + 0.5f), std::floor(y + 0.5f));
-        const float otherwise = std::hypot(nearest[1] - guide[0], nearest[2] - guide[1]) - velocity_tolerance;
-        return std::max(least, std::min(mismatch_of_depth(*nearest, guide[2]), std::clamp(otherwise, 0.0f, 1.0f)));
-    }
-
-    /// Depth and motion of a sample of the last frame, or of the one at the border that is nearest.
-    const float* sample_before(float x, float y) const {
-        const View<const float> before = std::as_const(history_.surface_).view();
-        return &before(std::clamp(static_cast<int>(x), 0, before.width - 1),
-                       std::clamp(static_cast<int>(y), 0, before.height - 1));
-    }
-
-    float mismatch_of_depth(float before, float now) const {
-        const float difference = std::abs(before - now) / std::max(std::min(before, now), 1e-6f);
-        return std::clamp(difference / static_cast<float>(options_.depth_tolerance) - 1, 0.0f, 1.0f);
-    }
-
-    /// Moves history towards what is about the pixel now; returns how far it was outside of that, in half extents.
-    float rectify(Past& past, int near_x, int near_y) const {
-        const float* const box = &input_.box.view()(near_x, near_y);
-        float* const color = past.sample.color;
-        const float was[3] = {color[0], color[1], color[2]};
-        if (options_.rectifies_ycocg) to_ycocg(color);
-        const bool is_variance = options_.rectification == Rectification::variance;
-        const float size = is_variance ? static_cast<float>(options_.box_size) : 1;
-        float outside = 0, shrink = 1;
-        float inside[3];
-        for (int c = 0; c < 3; ++c) {
-            const float half = size * box[3 + c], difference = color[c] - box[c];
-            inside[c] = box[c] + std::clamp(difference, -half, half);
-            outside = std::max(outside, std::abs(color[c] - inside[c]) / (box[3 + c] + 0.02f));
-            if (std::abs(difference) > half) shrink = std::min(shrink, half / std::abs(difference));
+    /// Output rows [first, last).
+    void run_band(TemporalBand& band, int first, int last) {
+        const FiniteRows rows = finite_rows(band, first, last);
+        const int width = history_.width();
+        if (band.gathered.width() != width) band.gathered = Image<float>(width, band_rows, 4, Layout::interleaved);
+        const View<float> gathered = cropped(band.gathered.view(), 0, 0, width, last - first);
+        gather_.rows.run({interleaved(rows.samples, in_width_, rows.count, 4), rows.first, {}},
+                         {gathered, first, {}, {}}, {1});
+        const bool rectifies = pass_.options.rectification != Rectification::none;
+        if (band.guide.width() != in_width_) {
+            band.guide = Image<float>(in_width_, 1, 4, Layout::interleaved);
+            if (rectifies) band.box = Image<float>(in_width_, 1, 8, Layout::interleaved);
         }
-        if (outside == 0) {
-            std::copy_n(was, 3, color);
-            return 0;
-        }
-        if (options_.rectification == Rectification::clip)
-            for (int c = 0; c < 3; ++c) inside[c] = box[c] + shrink * (color[c] - box[c]);
-        if (options_.rectifies_ycocg) to_rgb(inside);
-        const float moving = std::min(1.0f, past.speed / full_doubt_speed);
-        const float least = static_cast<float>(options_.rectify_share) * moving;
-        const float share = least + (1 - least) * past.mismatch;
-        for (int c = 0; c < 3; ++c) color[c] = was[c] + share * (inside[c] - was[c]);
-        if (share > 0) past.sample.is_exact = false;
-        return outside * std::max(moving, past.mismatch);
-    }
-
-    void follow_exposure(HistorySample& sample) const {
-        if (frame_.exposure == history_.exposure_) return;
-        if (options_.compresses_highlights) restore_highlight(sample.color);
-        for (float& v : sample.color) v *= static_cast<float>(frame_.exposure / history_.exposure_);
-        if (options_.compresses_highlights) compress_highlight(sample.color);
-        sample.is_exact = false;
-    }
-
-    /// How much weight a pixel of this speed may bring along.
-    float most_weight(float speed) const {
-        const double frames = options_.still_frames / (1 + options_.forget_by_motion * static_cast<double>(speed));
-        return static_cast<float>(frames * gather_.mean_weight);
-    }
-
-    void step(int x, int y, const float* gathered) {
-        const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
-        const int near_x = gather_.near_x[column], near_y = gather_.near_y[row];
-        const float weight = gather_.x[column] * gather_.y[row];
-        Past past = past_of(x, y, near_x, near_y);
-        HistorySample& sample = past.sample;
-        const float remembered = sample.weight;
-        float outside = 0;
-        if (remembered > least_weight_) {
-            follow_exposure(sample);
-            if (options_.rectification != Rectification::none) outside = rectify(past, near_x, near_y);
-        }
-        float memory = remembered;
-        if (memory > 0) {
-            memory *= 1 - past.mismatch * static_cast<float>(1 - options_.disocclusion_keep);
-            if (outside > 0) memory *= std::exp(-static_cast<float>(options_.doubt) * outside);
-            if (frame_.reactive.width > 0) memory *= 1 - std::clamp(frame_.reactive(near_x, near_y), 0.0f, 1.0f);
-            memory = std::min(memory, most_weight(past.speed));
-        }
-        float* const next = &history_.next_.view()(x, y);
-        float next_alpha = 0;
-        if (options_.rule == Accumulation::weighted) {
-            const bool is_copy = sample.is_exact && memory == remembered;
-            const float share = remembered != 0 ? memory / remembered : 0;
-            for (int c = 0; c < 3; ++c)
-                next[c] = gathered[c] + (is_copy           ? sample.sums[c]
-                                         : sample.is_exact ? share * sample.sums[c]
-                                                           : memory * sample.color[c]);
-            next[3] = memory + weight;
-            if (has_alpha()) next_alpha = (is_copy ? 1 : share) * past.alpha + gathered[3];
-        } else {
-            const float peak = gather_.peak_x[column] * gather_.peak_y[row];
-            const float share = options_.rule == Accumulation::per_frame ? 1 : peak;
-            const float alpha = remembered > 0 ? static_cast<float>(options_.alpha) * share : 1;
-            const bool is_usable = std::abs(weight) > 1e-4f;
-            for (int c = 0; c < 3; ++c)
-                next[c] =
-                    is_usable ? sample.color[c] + alpha * (gathered[c] / weight - sample.color[c]) : sample.color[c];
-            next[3] = is_usable || remembered > 0 ? 1.0f : 0.0f;
-            if (has_alpha())
-                next_alpha = is_usable ? past.alpha + alpha * (gathered[3] / weight - past.alpha) : past.alpha;
-        }
-        if (has_alpha()) history_.next_alpha_.view()(x, y) = next_alpha;
-        show(x, y, next, next_alpha);
-        note(x, y, weight, past, outside, next[3]);
-    }
-
-    /// The output pixel: what is remembered, or, as far as that is too little, samples about it.
-    void show(int x, int y, const float* next, float next_alpha) const {
-        float color[4] = {};
-        const float trust = std::clamp((next[3] - least_weight_) / (enough_weight_ - least_weight_), 0.0f, 1.0f);
-        if (trust < 1) interpolate_input(x, y, color);
-        if (trust > 0) {
-            const float scale = trust / next[3];
-            for (int c = 0; c < 3; ++c) color[c] = (1 - trust) * color[c] + next[c] * scale;
-            color[3] = has_alpha() ? (1 - trust) * color[3] + next_alpha * scale : 1;
-        }
-        if (options_.compresses_highlights) restore_highlight(color);
-        for (int c = 0; c < out_.channels; ++c) out_(x, y, c) = color[c];
-    }
-
-    void interpolate_input(int x, int y, float* color) const {
-        const View<const float> in = input_.color.view();
-        const float at_x = (static_cast<float>(x) + 0.5f) / scale_x_ - 0.5f - static_cast<float>(frame_.jitter.x);
-        const float at_y = (static_cast<float>(y) + 0.5f) / scale_y_ - 0.5f - static_cast<float>(frame_.jitter.y);
-        const float fx = std::floor(at_x), fy = std::floor(at_y), tx = at_x - fx, ty = at_y - fy;
-        std::fill_n(color, 4, 0.0f);
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i) {
-                const float w = (i == 0 ? 1 - tx : tx) * (j == 0 ? 1 - ty : ty);
-                const float* const p = &in(std::clamp(static_cast<int>(fx) + i, 0, in.width - 1),
-                                           std::clamp(static_cast<int>(fy) + j, 0, in.height - 1));
-                for (int c = 0; c < in.channels; ++c) color[c] += w * p[c];
+        for (int y = first, known = -1; y < last; ++y) {
+            if (const int near = gather_.near_y[static_cast<std::size_t>(y)]; near != known) {
+                guide_row(pass_, known = near, band.guide.view().data);
+                if (rectifies) box_row(pass_, rows, near, band.box.view().data);
             }
-        if (in.channels == 3) color[3] = 1;
+            step_row(pass_, {.y = y,
+                             .gathered = &gathered(0, y - first),
+                             .guide = band.guide.view().data,
+                             .box = rectifies ? band.box.view().data : nullptr,
+                             .rows = rows});
+        }
+        if (pass_.next_surface.width == 0) return;
+        const auto owned = [&](int y) { return static_cast<int>(std::int64_t(y) * in_height_ / history_.height()); };
+        for (int y = owned(first); y < owned(last); ++y) keep_surface_row(pass_, y);
     }
 
-    void note(int x, int y, float weight, const Past& past, float outside, float memory) const {
-        if (debug_.frame_weight.width > 0) debug_.frame_weight(x, y) = weight;
-        if (debug_.memory.width > 0) debug_.memory(x, y) = memory;
-        if (debug_.rejection.width > 0) debug_.rejection(x, y) = outside;
-        if (debug_.disocclusion.width > 0) debug_.disocclusion(x, y) = past.mismatch;
-        if (debug_.motion.width > 0) debug_.motion(x, y, 0) = past.motion_x, debug_.motion(x, y, 1) = past.motion_y;
+    /// The rows of the frame that output rows [first, last) are made of, and those beside the nearest ones.
+    FiniteRows finite_rows(TemporalBand& band, int first, int last) const {
+        const IndexRange read = gather_.rows.rows_needed(first, last);
+        const int begin = std::max(0, std::min(read.count() > 0 ? read.begin : in_height_,
+                                               gather_.near_y[static_cast<std::size_t>(first)] - 1));
+        const int end = std::min(in_height_, std::max(read.count() > 0 ? read.end : 0,
+                                                      gather_.near_y[static_cast<std::size_t>(last) - 1] + 2));
+        if (band.finite.width() != in_width_ || band.finite.height() < end - begin)
+            band.finite = Image<float>(in_width_, end - begin, 4, Layout::interleaved);
+        for (int y = begin; y < end; ++y) finite_row(pass_, y, &band.finite.view()(0, y - begin));
+        return {band.finite.view().data, in_width_, begin, end - begin};
     }
 
     /// The frame becomes the past of the next one.
     void keep() {
-        std::swap(history_.sums_, history_.next_);
-        std::swap(history_.alpha_, history_.next_alpha_);
-        if (frame_.depth.width > 0) keep_surface();
-        else history_.surface_ = {};
+        std::swap(history_.now_, history_.next_);
         history_.jitter_ = frame_.jitter;
         history_.exposure_ = frame_.exposure;
         history_.frames_ = has_history_ ? history_.frames_ + 1 : 1;
     }
 
-    void keep_surface() {
-        const View<const float>&color = frame_.color, &motion = frame_.motion;
-        if (history_.surface_.width() != color.width || history_.surface_.height() != color.height)
-            history_.surface_ = Image<float>(color.width, color.height, 3, Layout::interleaved);
-        for (int y = 0; y < color.height; ++y)
-            for (int x = 0; x < color.width; ++x) {
-                float* const to = &history_.surface_.view()(x, y);
-                to[0] = input_.guide.view()(x, y, 3);
-                for (int c = 0; c < 2; ++c) {
-                    const float v = motion.width > 0 ? motion(x, y, c) : 0;
-                    to[1 + c] = std::isfinite(v) ? v : 0;
-                }
-            }
-    }
-
     TemporalHistory& history_;
     const TemporalFrame& frame_;
-    const TemporalOptions& options_;
-    View<float> out_;
     const Parallel& parallel_;
-    const TemporalDebug& debug_;
-    int width_, height_;
-    float scale_x_, scale_y_;
+    int in_width_, in_height_;
     bool has_history_;
-    TemporalInput input_;
     FrameGather gather_;
-    float least_weight_ = 0.02f, enough_weight_ = 0.3f;  ///< what may be divided by; what is shown alone
+    TemporalPass pass_;
 };
 
 namespace {

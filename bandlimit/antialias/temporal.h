@@ -49,6 +49,7 @@ enum class Accumulation {
     /// h' = h + alpha w (r / K - h), w the largest weight of a sample, and the kernel sized to the input. It blurs.
     input_sized
 };
+std::string_view name_of(Accumulation rule);
 
 /// How the history is read where it was.
 enum class HistoryKernel { bilinear, catmull_rom, catmull_rom5, lanczos2, bspline };
@@ -100,14 +101,16 @@ struct TemporalOptions {
 TemporalOptions temporal_preset(std::string_view name);
 std::span<const std::string_view> temporal_presets();
 
-/// What frames before left at each output pixel. A value: copies are branches.
+/// What frames before left at each output pixel.
 class TemporalHistory {
 public:
     /// Throws Error for sizes below 1.
     TemporalHistory(int width, int height);
 
-    int width() const { return sums_.width(); }
-    int height() const { return sums_.height(); }
+    int width() const { return now_.sums.width(); }
+    int height() const { return now_.sums.height(); }
+    /// A copy, which goes its own way: to try what one frame does under several options.
+    TemporalHistory clone() const;
     /// Forgets everything.
     void reset() { frames_ = 0; }
     /// How many frames it holds.
@@ -115,15 +118,18 @@ public:
 
     /// Red, green, blue and 1, each times the weight of what was gathered: [width x height x 4], interleaved. Highlights
     /// are compressed where the options say so.
-    View<const float> sums() const { return sums_.view(); }
+    View<const float> sums() const { return now_.sums.view(); }
 
 private:
     friend class TemporalStep;
     friend class TemporalState;  ///< temporal_state.h: what of this is stored
 
-    Image<float> sums_, next_;
-    Image<float> alpha_, next_alpha_;  ///< times weight; empty while frames have none
-    Image<float> surface_;             ///< depth and motion of the last frame, as rendered [w x h x 3]
+    struct State {
+        Image<float> sums;
+        Image<float> transparency;  ///< 1 - alpha, times weight; empty while all is opaque
+        Image<float> surface;  ///< depth and motion of the last frame, as rendered [w x h x 4]; empty without depth
+    };
+    State now_, next_;  ///< the latter is what the former was before, to be written over
     Point jitter_{};
     double exposure_ = 1;
     int frames_ = 0;
@@ -142,7 +148,7 @@ struct TemporalDebug {
 ///
 /// shapes   frame.color of any size up to the output's; `out` [width x height x 3 or 4]
 /// range    any; samples that are not finite are left out
-/// memory   besides the history: eight floats per input pixel, and a few rows per thread
+/// memory   besides the history: a few rows per thread
 /// cost     docs/temporal.md
 /// throws   Error for shapes that do not fit, jitter beyond a pixel, and options out of range; Stopped, after which the
 ///          history is as before

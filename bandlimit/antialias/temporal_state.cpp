@@ -37,9 +37,9 @@ public:
     template <class History>
     static auto parts(History& h, const TemporalHistory*) {
         using P = Part<std::conditional_t<std::is_const_v<History>, const Image<float>, Image<float>>>;
-        return std::array{P{h.sums_, 4, Layout::interleaved, Size::of_value},
-                          P{h.alpha_, 1, Layout::planar, Size::of_value_or_none},
-                          P{h.surface_, 3, Layout::interleaved, Size::up_to_value}};
+        return std::array{P{h.now_.sums, 4, Layout::interleaved, Size::of_value},
+                          P{h.now_.transparency, 1, Layout::planar, Size::of_value_or_none},
+                          P{h.now_.surface, 4, Layout::interleaved, Size::up_to_value}};
     }
     template <class Meter>
     static auto parts(Meter& m, const TemporalMeter*) {
@@ -56,8 +56,6 @@ public:
         if (!(std::abs(n[0]) <= 1 && std::abs(n[1]) <= 1 && n[2] > 0 && n[2] < 1e30 && n[3] >= 0 && n[3] < 1e9))
             return false;
         h.jitter_ = {n[0], n[1]}, h.exposure_ = n[2], h.frames_ = static_cast<int>(n[3]);
-        // Scratch that is expected to be there where its image is.
-        h.next_alpha_ = Image<float>(h.alpha_.width(), h.alpha_.height());
         return true;
     }
     static std::array<double, 7> numbers(const TemporalMeter& m) {

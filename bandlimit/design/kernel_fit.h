@@ -1,5 +1,5 @@
 // Reconstruction kernels made to measure.
-// Stability: inner.
+// Stability: evolving.
 #pragma once
 #include <limits>
 #include <optional>

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <nlohmann/json.hpp>
-
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
+#include "bandlimit/io/limited_json.h"
 #include "bandlimit/io/regular_file.h"
 
 namespace bandlimit {
@@ -21,8 +20,6 @@ constexpr int largest_factor = 4096;
 constexpr int largest_first = 1'000'000;
 constexpr std::size_t most_weights = 65'536;
 constexpr std::size_t most_terms = 64, most_components = 16, most_pieces = 64;
-constexpr std::uint64_t most_bytes = 16 << 20;
-constexpr int deepest = 16;  // braces and brackets around anything in such a file
 
 /// `value` as an integer in [low, high]; `what` names it in the error.
 int integer(const json& value, int low, int high, const std::string& name, const char* what) {
@@ -45,21 +42,6 @@ std::optional<double> optional_number(const json& object, const char* key, const
     const auto found = object.find(key);
     if (found == object.end() || found->is_null()) return {};
     return number(*found, name, key);
-}
-
-json parse(std::string_view text, const std::string& name) {
-    if (text.size() > most_bytes) fail_file(name, "has more than 16 MB; name a taps.json");
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > deepest) fail_file(name, "is nested deeper than ", deepest, " levels; name a taps.json");
-        return true;
-    };
-    try {
-        return json::parse(text, limit_depth);
-    } catch (const json::parse_error& e) {
-        fail_file(name, "is not JSON from byte ", e.byte, " on; mend it there, or name a taps.json");
-    } catch (const json::exception&) {
-        fail_file(name, "holds a number that no computer number can hold; correct it");
-    }
 }
 
 /// The member `key` of `object`, or null.
@@ -139,7 +121,7 @@ void parse_pieces(const json& root, const std::string& name, TapsFile& file) {
 }  // namespace
 
 TapsFile parse_taps(std::string_view text, const std::string& name) {
-    const json root = parse(text, name);
+    const json root = parse_limited_json(text, name, "a taps.json");
     if (!root.is_object()) fail_file(name, "holds no object; name a taps.json");
     const auto stated = root.find("version");
     if (stated == root.end()) fail_file(name, "has no \"version\"; name a taps.json");
@@ -167,7 +149,9 @@ TapsFile parse_taps(std::string_view text, const std::string& name) {
     return file;
 }
 
-TapsFile read_taps(const std::string& path) { return parse_taps(read_text(path, most_bytes, "a taps.json"), path); }
+TapsFile read_taps(const std::string& path) {
+    return parse_taps(read_text(path, most_json_bytes, "a taps.json"), path);
+}
 
 const Taps& taps_of(const TapsFile& file, const std::string& name) {
     if (!file.taps)

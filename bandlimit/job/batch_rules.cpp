@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <type_traits>
 
-#include <nlohmann/json.hpp>
 #include "bandlimit/core/error.h"
 #include "bandlimit/core/file_error.h"
+#include "bandlimit/io/limited_json.h"
 #include "bandlimit/io/regular_file.h"
 
 namespace bandlimit::job {
@@ -18,9 +18,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 using Setting = std::function<void(MipsRecipe&)>;
-
-constexpr std::uint64_t most_bytes = 16 << 20;
-constexpr int deepest = 16;
 
 std::string lower(std::string_view text) {
     std::string result(text);
@@ -152,21 +149,6 @@ Rule read_rule(const json& object, const fs::path& folder, const std::string& na
     return rule;
 }
 
-json parse(const std::string& path) {
-    const std::string text = read_text(path, most_bytes, "a file of rules");
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > deepest) fail_file(path, "is nested deeper than ", deepest, " levels; name a file of rules");
-        return true;
-    };
-    try {
-        return json::parse(text, limit_depth);
-    } catch (const json::parse_error& e) {
-        fail_file(path, "is not JSON from byte ", e.byte, " on; mend it there, or name a file of rules");
-    } catch (const json::exception&) {
-        fail_file(path, "holds a number that no computer number can hold; correct it");
-    }
-}
-
 }  // namespace
 
 bool matches(std::string_view pattern, std::string_view path) {
@@ -177,7 +159,7 @@ bool matches(std::string_view pattern, std::string_view path) {
 }
 
 std::vector<Rule> read_rules(const std::string& path) {
-    const json root = parse(path);
+    const json root = parse_limited_json(read_text(path, most_json_bytes, "a file of rules"), path, "a file of rules");
     const bool is_ours = root.is_object() && root.contains("version") && root["version"] == 1 &&
                          root.contains("rules") && root["rules"].is_array();
     if (!is_ours) fail_file(path, "holds no rules; write {\"version\": 1, \"rules\": [ ... ]}");

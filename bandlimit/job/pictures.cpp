@@ -100,12 +100,12 @@ PictureWriter::PictureWriter(const std::string& path, const ImageTarget& target,
     if (keeps_codes) encoding_.transfer = Transfer::linear;
 }
 
-void PictureWriter::write(View<const float> values) {
+void PictureWriter::write(View<const float> values, bool premultiplied) {
     for (int y = 0; y < values.height; ++y) {
         row_.clear();
         for (int x = 0; x < values.width; ++x)
             for (int c = 0; c < values.channels; ++c) row_.push_back(values(x, y, c));
-        encode_row(row_, false, view_of(stored_), 0, encoding_);
+        encode_row(row_, premultiplied, view_of(stored_), 0, encoding_);
         writer_.write_rows(const_view(view_of(stored_)));
     }
 }

@@ -61,8 +61,8 @@ class PictureWriter {
 public:
     /// As ImageWriter. Where `keeps_codes`, values are codes and not linear light.
     PictureWriter(const std::string& path, const ImageTarget& target, bool keeps_codes, int threads = 0);
-    /// Appends the rows of `values`, colour not multiplied by alpha.
-    void write(View<const float> values);
+    /// Appends the rows of `values`; `premultiplied`: their colour is multiplied by alpha.
+    void write(View<const float> values, bool premultiplied = false);
     /// As ImageWriter::finish.
     void finish() { writer_.finish(); }
 

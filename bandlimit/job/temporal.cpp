@@ -11,6 +11,7 @@
 
 #include "bandlimit/analysis/metrics.h"
 #include "bandlimit/antialias/supersample.h"
+#include "bandlimit/antialias/temporal_options.h"
 #include "bandlimit/io/image_file.h"
 #include "bandlimit/job/batch_manifest.h"
 #include "bandlimit/job/command.h"
@@ -47,28 +48,13 @@ Image<float> channels_copied(View<const float> all, int first, int count) {
     return copy;
 }
 
-/// The scene of the output's size, seen by an input whose pixels are larger: the truth is then what `supersample` draws
-/// at the output's size.
-Scene seen_by_input(const TemporalJob& job, int width, int height) {
-    const Scene scene = make_scene(job.input, width, height);
-    const double step_x = double(width) / job.width, step_y = double(height) / job.height;
-    Scene seen = scene;
-    seen.at = [at = scene.at, step_x, step_y](double x, double y, int frame) {
-        SceneSample sample = at(x * step_x, y * step_y, frame);
-        sample.motion.x /= step_x, sample.motion.y /= step_y;
-        return sample;
-    };
-    seen.color = [color = scene.color, step_x, step_y](double x, double y, int frame) {
-        return color(x * step_x, y * step_y, frame);
-    };
-    seen.focal = scene.focal / step_x;
-    return seen;
-}
-
 Source source_of_scene(const TemporalJob& job, const Context& context) {
     const int length = jitter_length(job.scale);
     const std::vector<Point> jitter = jitter_sequence(job.jitter, length);
-    const Scene scene = seen_by_input(job, scaled(job.width, job.scale), scaled(job.height, job.scale));
+    const int width = scaled(job.width, job.scale), height = scaled(job.height, job.scale);
+    // That of the output's size: the truth is then what `supersample` draws.
+    const Scene scene = with_larger_pixels(make_scene(job.input, width, height), double(width) / job.width,
+                                           double(height) / job.height);
     Source source;
     source.count = job.frames > 0 ? job.frames : std::max(16, length);
     source.width = job.width, source.height = job.height, source.jitter_length = length;
@@ -159,6 +145,7 @@ Image<float> clamped(View<const float> picture) {
     return result;
 }
 
+/// Colour is multiplied by alpha, as frames have it.
 void write_frame(const std::string& path, View<const float> picture, int threads) {
     ImageTarget target;
     target.width = picture.width, target.height = picture.height;
@@ -166,7 +153,9 @@ void write_frame(const std::string& path, View<const float> picture, int threads
     target.alpha = 3;
     target.depth = Depth::f32;
     target.transfer = Transfer::linear;
-    write_codes(path, target, picture, threads);
+    PictureWriter writer(path, target, true, threads);
+    writer.write(picture, true);
+    writer.finish();
 }
 
 /// A frame that was written, with colour multiplied by alpha, as it is in memory before.
@@ -181,18 +170,16 @@ Image<float> read_frame(const std::string& path, const Parallel& parallel) {
 
 /// All that decides what frames look like, besides the files of each.
 std::string settings_of(const TemporalJob& job, const TemporalReport& report, int frames) {
-    const TemporalOptions& o = job.options;
     const SequenceJob& s = job.sequence;
     const auto flag = [](const std::optional<bool>& value) { return value ? int(*value) : -1; };
-    return fmt::format(
-        "{} {} {} {} {} {} {} {} {} {} {}\n{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n{} {} {} {} {} {} {} {}",
-        BANDLIMIT_VERSION, job.input, job.scale, frames, report.in_width, report.in_height, int(job.jitter),
-        report.jitter_length, report.conventions, job.measures, job.reference,  //
-        o.kernel.name, o.kernel.radius, int(o.rule), o.alpha, o.still_frames, o.forget_by_motion, int(o.history_kernel),
-        o.dilates_motion, o.depth_tolerance, o.disocclusion_keep, int(o.rectification), o.rectifies_ycocg, o.box_size,
-        o.rectify_share, o.doubt, o.compresses_highlights, o.sharpening,  //
-        s.color, s.depth, s.motion, s.motion_units ? int(*s.motion_units) : -1, flag(s.is_previous_minus_current),
-        flag(s.is_y_up), s.meta, s.meta.empty() ? "" : hash_of_file(s.meta));
+    std::string text = fmt::format(
+        "{} {} {} {} {} {} {} {} {} {} {}\n{} {} {} {} {} {} {} {}", BANDLIMIT_VERSION, job.input, job.scale, frames,
+        report.in_width, report.in_height, int(job.jitter), report.jitter_length, report.conventions, job.measures,
+        job.reference, s.color, s.depth, s.motion, s.motion_units ? int(*s.motion_units) : -1,
+        flag(s.is_previous_minus_current), flag(s.is_y_up), s.meta, s.meta.empty() ? "" : hash_of_file(s.meta));
+    for (const TemporalOptionInfo& info : temporal_option_infos())
+        text += fmt::format("\n{} {}", info.name, option_value(job.options, info.name));
+    return text;
 }
 
 /// How many of the last frames are measured: a period of the jitter, but no more than half of all.

@@ -10,9 +10,9 @@
 #include <system_error>
 #include <utility>
 
-#include <nlohmann/json.hpp>
 #include "bandlimit/core/file_error.h"
 #include "bandlimit/io/atomic_file.h"
+#include "bandlimit/io/limited_json.h"
 #include "bandlimit/io/regular_file.h"
 #include "bandlimit/job/batch_manifest.h"
 
@@ -23,7 +23,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::string_view magic = "bandlimit temporal 1\n";
-constexpr std::uint64_t most_text = std::uint64_t{1} << 28;
 constexpr const char* checkpoint_name = ".bandlimit-temporal";
 
 /// The 128-bit XXH3 hash of what passes.
@@ -93,10 +92,10 @@ std::vector<MadeFrame> restored(const std::string& path, const std::string& sett
     read(start.data(), start.size());
     std::uint64_t length = 0;
     read(&length, sizeof length);
-    if (start != magic || length > std::min(left, most_text)) throw std::runtime_error("not a checkpoint");
+    if (start != magic || length > std::min(left, most_json_bytes)) throw std::runtime_error("not a checkpoint");
     std::string text(length, '\0');
     read(text.data(), length);
-    const json head = json::parse(text);
+    const json head = parse_limited_json(text, path, "a checkpoint");
     if (head.at("settings").get<std::string>() != text_of_name(settings)) throw std::runtime_error("of other settings");
     std::vector<MadeFrame> frames;
     for (const json& entry : head.at("frames")) frames.push_back(frame_in(entry));

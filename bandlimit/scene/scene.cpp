@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "bandlimit/core/error.h"
 #include "bandlimit/scene/scenes.h"
@@ -68,6 +69,20 @@ Scene make_scene(std::string_view name, int width, int height, const SceneOption
     Scene scene = e.make({width, height, speed, options.occlusion_rays});
     scene.name = e.name, scene.summary = e.summary;
     return scene;
+}
+
+Scene with_larger_pixels(const Scene& scene, double x, double y) {
+    if (!(x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y)))
+        fail("with_larger_pixels: ", x, " x ", y, " times as large; pass numbers above 0");
+    Scene seen = scene;
+    seen.at = [at = scene.at, x, y](double px, double py, int frame) {
+        SceneSample sample = at(px * x, py * y, frame);
+        sample.motion.x /= x, sample.motion.y /= y;
+        return sample;
+    };
+    seen.color = [color = scene.color, x, y](double px, double py, int frame) { return color(px * x, py * y, frame); };
+    seen.focal = scene.focal / x;
+    return seen;
 }
 
 }  // namespace bandlimit

@@ -79,4 +79,8 @@ const std::string& scene_summary(std::string_view name);
 ///         number of rays that is not within 0 to 1e6
 Scene make_scene(std::string_view name, int width, int height, const SceneOptions& options = {});
 
+/// The same scene in pixels `x` times as wide and `y` times as high, both above 0: what the input of an upscaler sees,
+/// whose output ought to be `scene`.
+Scene with_larger_pixels(const Scene& scene, double x, double y);
+
 }  // namespace bandlimit

@@ -236,6 +236,20 @@ TEST(Scene, RaysOfOcclusionAgreeWithItsTruth) {
     }
 }
 
+TEST(Scene, LargerPixelsSeeTheSamePoints) {
+    const Scene scene = make_scene("mover", width, height), seen = with_larger_pixels(scene, 2, 3);
+    at_random(200, [&](double x, double y, int frame) {
+        const SceneSample at = scene.at(x, y, frame), same = seen.at(x / 2, y / 3, frame);
+        EXPECT_NEAR(same.depth, at.depth, at.depth * tolerance);
+        EXPECT_NEAR(same.motion.x * 2, at.motion.x, tolerance);
+        EXPECT_NEAR(same.motion.y * 3, at.motion.y, tolerance);
+        EXPECT_LT(difference(seen.color(x / 2, y / 3, frame), same.color), tolerance);
+    });
+    EXPECT_EQ(seen.focal, scene.focal / 2);
+    EXPECT_THROW(with_larger_pixels(scene, 0, 1), Error);
+    EXPECT_THROW(with_larger_pixels(scene, 1, -1), Error);
+}
+
 TEST(Scene, SaysWhatIsWrong) {
     EXPECT_TRUE(is_scene("foliage"));
     EXPECT_FALSE(is_scene("stripes"));
