@@ -41,6 +41,107 @@ TEST(TemporalVerb, UpscalesASceneTowardsItsTruth) {
     EXPECT_TRUE(std::filesystem::exists(shell / "out/frame_031.exr"));
 }
 
+TEST(TemporalVerb, ReportsMeasuresAndPictures) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome run = shell("temporal mover out --size 32x24 --scale 2 --frames 12 --report r --json");
+    ASSERT_TRUE(succeeds(run));
+    const json report = run.json();
+    EXPECT_EQ(report["measured_frames"], 6) << "half of all, less than a period of the jitter";
+    for (const char* key : {"flicker", "warped_difference", "sharpness", "ms_per_frame"})
+        EXPECT_GT(report[key].get<double>(), 0) << key;
+    EXPECT_GT(report["ghosting"]["disoccluded"].get<double>(), 0);
+    EXPECT_GT(report["ghosting"]["elsewhere"].get<double>(), 0);
+    EXPECT_LT(report["flicker"].get<double>(), 0.05);
+    EXPECT_TRUE(report["continued_at"].is_null());
+    const std::string page = bytes_of(shell / "r/index.html");
+    for (const char* picture :
+         {"animation", "sheet", "last", "weight", "memory", "rejection", "motion", "disocclusion"}) {
+        const std::string name = std::string(picture) + ".png";
+        EXPECT_NE(page.find("\"" + name + "\""), std::string::npos) << name;
+        EXPECT_GT(job::read_codes(shell / ("r/" + name)).width(), 0) << name;
+    }
+    const Image<float> strip = job::read_codes(shell / "r/animation.png"),
+                       sheet = job::read_codes(shell / "r/sheet.png");
+    EXPECT_EQ(strip.width(), 3 * 64 + 2 * 4);
+    EXPECT_EQ(strip.height(), 48);
+    EXPECT_EQ(sheet.width(), 8 * 64 + 7 * 4);
+    EXPECT_EQ(sheet.height(), 3 * 48 + 2 * 4);
+    EXPECT_NE(bytes_of(shell / "r/animation.png").find("acTL"), std::string::npos);
+}
+
+// Without a truth, and of a single frame, what is unknown is null.
+TEST(TemporalVerb, ReportsWhatIsKnown) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "fence", "in", 4);
+    const json report = shell("temporal in out --meta meta.json --report r --json").json();
+    EXPECT_TRUE(report["sharpness"].is_null());
+    EXPECT_TRUE(report["ghosting"]["elsewhere"].is_null());
+    EXPECT_TRUE(report["frames"][0]["psnr"].is_null());
+    EXPECT_TRUE(report["flicker"].is_number());
+    EXPECT_TRUE(report["high_frequencies"]["output"].is_number());
+    EXPECT_EQ(job::read_codes(shell / "r/animation.png").width(), 2 * 32 + 4);
+    const json single = shell("temporal in out --meta meta.json --frames 1 --report r --json").json();
+    EXPECT_TRUE(single["flicker"].is_null());
+    EXPECT_TRUE(single["warped_difference"].is_null());
+    EXPECT_EQ(single["measured_frames"], 0);
+}
+
+/// Writes NaN into the depth of a frame at (5, 7).
+void lose_depth(const std::string& path) {
+    ImageReader reader(path);
+    const ImageInfo info = reader.info();
+    AnyImage all = read_image(reader);
+    const auto depth = std::ranges::find(info.channel_names, "Depth.Z") - info.channel_names.begin();
+    std::get<Image<float>>(all).view()(5, 7, static_cast<int>(depth)) = std::numeric_limits<float>::quiet_NaN();
+    ImageTarget target = target_of(Depth::f32, info.width, info.height, info.channels());
+    target.channel_names = info.channel_names, target.transfer = Transfer::linear;
+    write_image(path, target, pixels(all));
+}
+
+// One line, the frames before, and nothing half-written.
+TEST(TemporalVerb, StopsAtAFrameThatIsBad) {
+    using Spoil = std::function<void(const Shell&)>;
+    const std::string bad = "in/f_103.exr";
+    const auto drawn = [&](const std::string& line) -> Spoil {
+        return [=](const Shell& shell) { ASSERT_TRUE(succeeds(shell(line))); };
+    };
+    const Spoil no_depth = [&](const Shell& shell) { lose_depth(shell / bad); };
+    const Spoil half = [&](const Shell& shell) {
+        const std::string bytes = bytes_of(shell / bad);
+        write_bytes(shell / bad, bytes.substr(0, bytes.size() / 2));
+    };
+    const Spoil empty = [&](const Shell& shell) { write_bytes(shell / bad, ""); };
+    const Spoil missing = [&](const Shell& shell) { std::filesystem::remove(shell / bad); };
+    const Spoil meta = [&](const Shell& shell) { write_bytes(shell / "meta.json", "{\"sequences\": {"); };
+    struct Case {
+        std::string word;
+        Spoil spoil;
+        int made;
+    };
+    const std::vector<Case> cases{
+        {"33 x 24", drawn("pattern mover " + bad + " --size 33x24 --spp 1"), 3},
+        {"has the channels", drawn("supersample mover " + bad + " --size 32x24 --pattern regular:1"), 3},
+        {"depth at 5, 7", no_depth, 3},
+        {"f_103.exr", half, 3},
+        {"f_103.exr", empty, 3},
+        {"frame 103 is missing", missing, 0},
+        {"not JSON", meta, 0}};
+    for (const Case& c : cases) {
+        const Shell shell(BANDLIMIT_PROGRAM);
+        add_sequence(shell, "mover", "in", 6);
+        c.spoil(shell);
+        EXPECT_TRUE(fails(1, shell("temporal in out --meta meta.json --report r"), c.word));
+        std::set<std::string> made, wanted;
+        if (std::filesystem::exists(shell / "out"))
+            for (const auto& entry : std::filesystem::directory_iterator(shell / "out"))
+                made.insert(entry.path().filename());
+        for (int i = 0; i < c.made; ++i) wanted.insert("f_10" + std::to_string(i) + ".exr");
+        if (c.made > 0) wanted.insert(".bandlimit-temporal");
+        EXPECT_EQ(made, wanted) << c.word;
+        EXPECT_FALSE(std::filesystem::exists(shell / "r")) << c.word;
+    }
+}
+
 // After a period, what is still is what the samples of all frames add up to: supersampling with that kernel.
 TEST(TemporalVerb, ReadsASequenceAndItsReference) {
     const Shell shell(BANDLIMIT_PROGRAM);

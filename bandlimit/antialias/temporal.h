@@ -122,6 +122,7 @@ public:
 
 private:
     friend class TemporalStep;
+    friend class TemporalState;  ///< temporal_state.h: what of this is stored
 
     struct State {
         Image<float> sums;
