@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include "apps/console/common.h"
 #include "apps/page/page.h"
+#include "apps/verbs/convention_check.h"
 #include "apps/verbs/temporal_page.h"
 #include "bandlimit/antialias/temporal_options.h"
 #include "bandlimit/job/command.h"
@@ -23,9 +24,10 @@ using nlohmann::ordered_json;
 struct Options {
     job::TemporalJob job;
     std::string size, report, units, direction, y_axis, jitter = "halton";
+    std::string axes, motion_jitter, jitter_sign, jitter_y;
     std::vector<std::string> set;  ///< NAME=VALUE
     Parallel parallel;
-    bool json = false;
+    bool json = false, checks_conventions = false;
 };
 
 template <class Value>
@@ -76,6 +78,17 @@ job::TemporalJob job_of(const Options& o) {
         job.sequence.is_previous_minus_current =
             one_of<bool>("--motion-direction", o.direction, {{"previous-current", true}, {"current-previous", false}});
     if (!o.y_axis.empty()) job.sequence.is_y_up = one_of<bool>("--motion-y", o.y_axis, {{"up", true}, {"down", false}});
+    if (!o.axes.empty())
+        job.sequence.are_axes_swapped = one_of<bool>("--motion-axes", o.axes, {{"xy", false}, {"yx", true}});
+    if (!o.motion_jitter.empty())
+        job.sequence.includes_jitter =
+            one_of<bool>("--motion-jitter", o.motion_jitter, {{"excluded", false}, {"included", true}});
+    using Sign = job::MotionConvention::JitterSign;
+    if (!o.jitter_sign.empty())
+        job.sequence.jitter_sign = one_of<Sign>("--jitter-sign", o.jitter_sign,
+                                                {{"plus", Sign::plus}, {"minus", Sign::minus}, {"none", Sign::none}});
+    if (!o.jitter_y.empty())
+        job.sequence.is_jitter_y_up = one_of<bool>("--jitter-y", o.jitter_y, {{"up", true}, {"down", false}});
     return job;
 }
 
@@ -88,6 +101,9 @@ void check(const Options& o) {
     if (job.width > 0 && !is_scene(job.input))
         throw UsageError("--size: a folder of frames has a size of its own; leave it out, or name a scene");
     job::check(job);
+    if (o.checks_conventions && is_scene(job.input))
+        throw UsageError("--check-conventions: scenes have ours; name a folder of frames");
+    if (!o.checks_conventions && job.out.empty()) throw UsageError("OUTDIR is required; name a folder for the frames");
     if (o.report.empty()) return;
     // The report may lie in the folder of the frames, which is made once these are known to be readable.
     namespace fs = std::filesystem;
@@ -150,6 +166,7 @@ void print_measures(Console& console, const job::TemporalReport& r) {
 
 void run(const Options& o, Console& console, const std::string& command) {
     const job::TemporalJob job = job_of(o);
+    if (o.checks_conventions) return check_conventions(job.input, job.sequence, o.parallel, o.json, console);
     const job::TemporalReport report = job::temporal(job, context_of(console, o.parallel));
     const std::string folder = o.report.empty() ? "" : job::made_folder(o.report);
     const ordered_json json = json_of(o, job, report);
@@ -179,14 +196,14 @@ void add_temporal(Program& program) {
         "temporal", "Antialias and upscale over time: accumulate jittered frames, with the sum of their weights",
         "bandlimit temporal glyphs smooth --size 48x32 --scale 2 --report smooth/report\n"
         "Others:\n"
-        "  bandlimit temporal render smooth --meta render/meta.json --reference truth --report report");
+        "  bandlimit temporal render smooth --meta render/meta.json --reference truth --report report\n"
+        "  bandlimit temporal render --meta render/meta.json --check-conventions");
     verb.add_option("INPUT", o->job.input,
                     "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)")
         .required();
     verb.add_option(
             "OUTDIR", o->job.out,
-            "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was")
-        .required();
+            "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was");
     verb.add_option("--size", o->size, "Size of the input, for scenes").type_name("WxH");
     verb.add_option_function<std::string>(
             "--scale", [o](const std::string& s) { o->job.scale = parse_number("--scale", s); },
@@ -206,15 +223,29 @@ void add_temporal(Program& program) {
     verb.add_option("--conventions", o->job.sequence.conventions,
                     "What motion vectors mean: blender, unreal, unity or bandlimit; auto (default): by channel names")
         .type_name("C");
-    verb.add_option("--color", o->job.sequence.color, "Channels of the colour, as Beauty for Beauty.R and so on")
-        .type_name("NAME");
-    verb.add_option("--depth", o->job.sequence.depth, "Channel of the linear depth").type_name("NAME");
-    verb.add_option("--motion", o->job.sequence.motion, "Channels of the motion, as Vector for Vector.X and Vector.Y")
-        .type_name("NAME");
+    verb.add_flag("--check-conventions", o->checks_conventions,
+                  "Find out, instead, which signs, axes and units explain the pictures, and say which of the options\n"
+                  "below to change: exit 0 if none, 1 otherwise");
+    verb.add_option("--color", o->job.sequence.color,
+                    "Channels of the colour, as Beauty for Beauty.R and so on; or, as for the next two, files of its\n"
+                    "own, as beauty_####.exr or beauty_####.exr:Beauty, where #### is the number of the frame")
+        .type_name("NAME|FILES");
+    verb.add_option("--depth", o->job.sequence.depth, "Channel of the linear depth, or its files")
+        .type_name("NAME|FILES");
+    verb.add_option("--motion", o->job.sequence.motion,
+                    "Channels of the motion, as Vector for Vector.X and Vector.Y, or its files")
+        .type_name("NAME|FILES");
     verb.add_option("--motion-units", o->units, "Overrides the conventions").type_name("pixels|uv|ndc");
     verb.add_option("--motion-direction", o->direction, "Overrides the conventions")
         .type_name("previous-current|current-previous");
     verb.add_option("--motion-y", o->y_axis, "Overrides the conventions").type_name("up|down");
+    verb.add_option("--motion-axes", o->axes, "yx: the first channel is the motion along y").type_name("xy|yx");
+    verb.add_option("--motion-jitter", o->motion_jitter, "included: vectors include the difference of the jitter")
+        .type_name("excluded|included");
+    verb.add_option("--jitter-sign", o->jitter_sign,
+                    "minus: pixels show the scene at their middle minus the jitter; none: the pictures have no jitter")
+        .type_name("plus|minus|none");
+    verb.add_option("--jitter-y", o->jitter_y, "Which way the jitter's y points; default down").type_name("up|down");
     verb.add_option("--reference", o->job.reference,
                     "Folder with the truth for each frame, of the output's size, paired by the number in its name")
         .type_name("DIR");

@@ -2,6 +2,8 @@
 #include <fstream>
 
 #include "apps/run_program_test.h"
+#include "bandlimit/job/channels.h"
+#include "bandlimit/job/check_conventions.h"
 #include "bandlimit/job/pictures.h"
 
 namespace bandlimit {
@@ -193,6 +195,166 @@ TEST(TemporalVerb, MotionHasADirection) {
         return sum;
     };
     EXPECT_LT(error(last("")), error(last("--motion-direction current-previous")));
+}
+
+/// Writes floats to an EXR file.
+void write_channels(const std::string& path, View<const float> values, const std::vector<std::string>& names) {
+    ImageTarget target;
+    target.width = values.width, target.height = values.height, target.channel_names = names;
+    target.depth = Depth::f32, target.transfer = Transfer::linear;
+    job::write_codes(path, target, values);
+}
+
+/// Channels of an EXR file as a file of their own. Those of scenes are read in the order R G B A AO Albedo Depth Normal
+/// Vector.
+void copy_channels(const std::string& from, const std::string& to, int first, const std::vector<std::string>& names) {
+    write_channels(to, job::channels_copied(job::read_codes(from).view(), first, int(names.size())).view(), names);
+}
+
+/// Three frames of a scene whose buffers have files of their own, and those of all buffers in `in`.
+void add_buffers(const Shell& shell) {
+    add_sequence(shell, "mover", "in", 3);
+    std::filesystem::create_directories(shell / "own/passes");
+    for (const std::string number : {"100", "101", "102"}) {
+        const std::string from = shell / ("in/f_" + number + ".exr");
+        copy_channels(from, shell / ("own/beauty_" + number + "_v2.exr"), 0, {"R", "G", "B", "A"});
+        copy_channels(from, shell / ("own/depth_" + number + ".exr"), 8, {"Y"});
+        copy_channels(from, shell / ("own/passes/vectors_" + number + ".exr"), 12, {"R", "G"});
+    }
+}
+const std::string own_buffers = "--color beauty_###_v2.exr --depth depth_###.exr --motion passes/vectors_###.exr";
+
+TEST(TemporalVerb, BuffersMayHaveFilesOfTheirOwn) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_buffers(shell);
+    ASSERT_TRUE(succeeds(shell("temporal in one")));
+    ASSERT_TRUE(succeeds(shell("temporal own two " + own_buffers)));
+    ASSERT_TRUE(succeeds(shell("temporal in three --depth ../own/depth_###.exr:Y")));
+    ASSERT_TRUE(succeeds(shell("temporal in four --depth ../in/f_###.exr:AO")));
+    const std::string wanted = bytes_of(shell / "one/f_102.exr");
+    EXPECT_TRUE(bytes_of(shell / "two/beauty_102_v2.exr") == wanted);
+    EXPECT_TRUE(bytes_of(shell / "three/f_102.exr") == wanted);
+    EXPECT_FALSE(bytes_of(shell / "four/f_102.exr") == wanted) << "another depth finds other things disoccluded";
+    // The colour's files are those that are not another buffer's.
+    for (const std::string number : {"100", "101", "102"})
+        std::filesystem::copy(shell / ("own/depth_" + number + ".exr"), shell / ("in/d_" + number + ".exr"));
+    ASSERT_TRUE(succeeds(shell("temporal in five --depth d_###.exr")));
+    EXPECT_TRUE(bytes_of(shell / "five/f_102.exr") == wanted);
+}
+
+TEST(TemporalVerb, BuffersMustFitEachOther) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_buffers(shell);
+    EXPECT_TRUE(fails(2, shell("temporal own out --depth depth.exr"), "####"));
+    EXPECT_TRUE(fails(2, shell("temporal own out --depth d_##_##.exr"), "--depth: "));
+    EXPECT_TRUE(fails(1, shell("temporal own out --color c_###.exr"), "holds no c_###.exr"));
+    EXPECT_TRUE(fails(1, shell("temporal own out " + own_buffers + ":Vector"), "Vector.X"));
+    EXPECT_TRUE(fails(1, shell("temporal in out --depth ../own/passes/vectors_###.exr"), "no channel Z"));
+    std::filesystem::copy(shell / "in/f_100.exr", shell / "in/g_100.exr");
+    EXPECT_TRUE(fails(1, shell("temporal in out"), "both frame 100"));
+    std::filesystem::remove(shell / "own/depth_101.exr");
+    EXPECT_TRUE(fails(1, shell("temporal own out " + own_buffers), "there is no depth_101.exr for beauty_101_v2.exr"));
+    ASSERT_TRUE(succeeds(shell("pattern mover own/depth_101.exr --size 31x24 --spp 1")));
+    EXPECT_TRUE(fails(1, shell("temporal own out " + own_buffers), "one size"));
+}
+
+// A sequence that another program rendered: Blender, whose vectors have y up.
+TEST(TemporalVerb, ReadsWhatBlenderRendered) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    std::filesystem::copy(BANDLIMIT_EXAMPLES "/sequence", shell / "sequence");
+    const Outcome run = shell("temporal sequence out --meta sequence/meta.json --json");
+    ASSERT_TRUE(succeeds(run));
+    EXPECT_EQ(run.json()["conventions"], "blender");
+    EXPECT_EQ(run.json()["frames"].size(), 4u);
+    ASSERT_TRUE(succeeds(shell("temporal sequence same --meta sequence/meta.json --conventions blender")));
+    ASSERT_TRUE(succeeds(shell("temporal sequence other --meta sequence/meta.json --conventions bandlimit")));
+    const std::string last = bytes_of(shell / "out/frame_004.exr");
+    EXPECT_TRUE(bytes_of(shell / "same/frame_004.exr") == last);
+    EXPECT_FALSE(bytes_of(shell / "other/frame_004.exr") == last);
+    // Each frame adds samples: the floor near by becomes smoother.
+    const auto roughness = [&](const std::string& name) {
+        const Image<float> image = job::read_picture(shell / name);
+        double sum = 0;
+        for (int y = 80; y < 134; ++y)
+            for (int x = 20; x < 220; ++x) sum += std::abs(double(image.view()(x, y)) - double(image.view()(x, y + 1)));
+        return sum;
+    };
+    EXPECT_LT(roughness("out/frame_004.exr"), 0.95 * roughness("out/frame_001.exr"));
+}
+
+// Of a rendered sequence, too, each of the 216 readings is told what to change.
+TEST(CheckConventionsVerb, FindsEveryFlipOfARenderedSequence) {
+    const std::string folder = BANDLIMIT_EXAMPLES "/sequence";
+    const job::ConventionReport report =
+        job::check_conventions(job::open_sequence({.folder = folder, .meta = folder + "/meta.json"}));
+    const job::MotionConvention& right = job::convention_called("blender").motion;
+    EXPECT_EQ(report.verdict, job::ConventionReport::Verdict::right);
+    ASSERT_EQ(report.candidates.size(), 216u);
+    for (const job::ConventionCandidate& c : report.candidates)
+        EXPECT_EQ(job::judged(report, c.convention).flags, job::flags_between(c.convention, right));
+}
+
+TEST(CheckConventionsVerb, NamesTheFlagsToChange) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    std::filesystem::create_directory(shell / "in");
+    for (const std::string frame : {"0", "1", "2"})
+        ASSERT_TRUE(succeeds(shell("pattern plane in/f_" + frame + ".exr --size 96x64 --spp 1 --frame " + frame)));
+    const Outcome right = shell("temporal in --check-conventions");
+    ASSERT_TRUE(succeeds(right));
+    EXPECT_NE(right.out.find("the same"), std::string::npos) << right;
+    const std::set<std::string> files = shell.files();
+    const std::string wrong = "temporal in --check-conventions --motion-y up --motion-axes yx";
+    const Outcome run = shell(wrong);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_EQ(run.err, "bandlimit: error: in: is read wrongly; pass --motion-y down --motion-axes xy\n");
+    EXPECT_EQ(shell.files(), files) << "nothing is written";
+    const json report = shell(wrong + " --json").json();
+    EXPECT_EQ(report["conventions"], "bandlimit");
+    EXPECT_EQ(report["verdict"], "wrong");
+    EXPECT_EQ(report["flags"], (json{"--motion-y down", "--motion-axes xy"}));
+    EXPECT_EQ(report["reading"]["motion-axes"], "yx");
+    EXPECT_EQ(report["best"]["reading"]["motion-axes"], "xy");
+    EXPECT_LT(report["best"]["error"].get<double>(), report["error"].get<double>());
+    EXPECT_EQ(report["candidates"].size(), 24u);
+    EXPECT_TRUE(succeeds(shell("temporal in --check-conventions --conventions blender --motion-y down")));
+    EXPECT_TRUE(fails(1, shell("temporal in --check-conventions --conventions unity"), "MotionVectors.X"));
+    EXPECT_TRUE(fails(2, shell("temporal plane --check-conventions --size 96x64"), "--check-conventions: "));
+    EXPECT_TRUE(fails(2, shell("temporal in --check-conventions --motion-axes zx"), "xy, yx"));
+}
+
+// What the check asks for is what reading does. The other sequence is the same, stored with axes swapped, current minus
+// previous, the jitter in the vectors, and that turned round with y up.
+TEST(CheckConventionsVerb, FlagsAreHonoured) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "mover", "in", 3);
+    std::filesystem::create_directory(shell / "other");
+    json meta = json::parse(bytes_of(shell / "meta.json")), stored = json::array();
+    std::array<double, 2> before{};
+    for (int i = 0; i < 3; ++i) {
+        const auto jitter = meta["sequences"]["in"]["jitter"][std::size_t(i)].get<std::array<double, 2>>();
+        stored.push_back({-jitter[0], jitter[1]});
+        if (i == 0) before = jitter;  // there is no frame before
+        const std::string name = "/f_10" + std::to_string(i) + ".exr";
+        Image<float> all = job::read_codes(shell / ("in" + name));
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 32; ++x) {
+                const float motion_x = all.view()(x, y, 12), motion_y = all.view()(x, y, 13);
+                all.view()(x, y, 12) = -(motion_y + float(jitter[1] - before[1]));
+                all.view()(x, y, 13) = -(motion_x + float(jitter[0] - before[0]));
+            }
+        write_channels(shell / ("other" + name), all.view(), ImageReader(shell / ("in" + name)).info().channel_names);
+        before = jitter;
+    }
+    meta["sequences"]["other"]["jitter"] = stored;
+    std::ofstream(shell / "meta.json") << meta.dump();
+    ASSERT_TRUE(succeeds(shell("temporal in one --meta meta.json")));
+    ASSERT_TRUE(
+        succeeds(shell("temporal other two --meta meta.json --motion-axes yx --motion-direction "
+                       "current-previous --motion-jitter included --jitter-sign minus --jitter-y up")));
+    const Image<float> one = job::read_picture(shell / "one/f_102.exr");
+    const Image<float> two = job::read_picture(shell / "two/f_102.exr");
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x) EXPECT_NEAR(one.view()(x, y), two.view()(x, y), 1e-4) << "vectors are rounded";
 }
 
 TEST(TemporalVerb, RefusesWhatDoesNotFit) {

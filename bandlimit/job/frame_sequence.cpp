@@ -4,14 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "bandlimit/io/image_file.h"
 #include "bandlimit/io/located_json.h"
+#include "bandlimit/job/channels.h"
 #include "bandlimit/job/option_error.h"
 #include "bandlimit/job/pictures.h"
 
@@ -19,28 +18,6 @@ namespace bandlimit::job {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double sky_from = 1e9;  // depths that far are sky
-
-struct NamedConvention {
-    std::string_view name;
-    MotionConvention motion;
-    std::string_view motion_channel;
-};
-constexpr std::array<NamedConvention, 4> conventions{{
-    {"bandlimit", {MotionConvention::Units::pixels, true, false}, "Vector"},
-    {"blender", {MotionConvention::Units::pixels, true, true}, "Vector"},
-    {"unreal", {MotionConvention::Units::ndc, false, true}, "Velocity"},
-    {"unity", {MotionConvention::Units::uv, false, true}, "MotionVectors"},
-}};
-
-const NamedConvention& convention_called(const std::string& name) {
-    const auto found = std::ranges::find(conventions, name, &NamedConvention::name);
-    if (found == conventions.end())
-        throw OptionError("conventions", fmt::format("\"{}\" is unknown; choose one of: {}", name,
-                                                     fmt::join(convention_names(), ", ")));
-    return *found;
-}
 
 /// The channel called `name`, or whose name ends in ".name" (layers of EXR); -1 if there is none.
 int channel_called(const std::vector<std::string>& names, std::string_view name) {
@@ -88,6 +65,11 @@ void check_adjacent(const std::vector<std::string>& names, int first, std::initi
     }
 }
 
+/// The channel in what an option says of a buffer: "Z" of "depth_####.exr:Z", or all of "Z".
+std::string channel_in(const std::string& text) {
+    return is_file_pattern(text) ? parse_file_pattern("", text).channel : text;
+}
+
 /// The item of an object called `key`; null if there is none.
 const JsonValue* item_called(const JsonValue& object, std::string_view key) {
     const auto found = std::ranges::find(object.keys, key);
@@ -114,77 +96,134 @@ void read_matrix(const LocatedJson& file, const JsonValue& camera, std::string_v
 
 }  // namespace
 
-std::vector<std::string_view> convention_names() {
-    std::vector<std::string_view> names{"auto"};
-    for (const NamedConvention& c : conventions) names.push_back(c.name);
-    return names;
+void check(const SequenceJob& job) {
+    if (job.conventions != "auto") convention_called(job.conventions);
+    for (const auto& [option, text] : {std::pair("color", &job.color), {"depth", &job.depth}, {"motion", &job.motion}})
+        if (is_file_pattern(*text)) parse_file_pattern(option, *text);
 }
 
-int number_in(const std::string& name) {
-    const std::string stem = fs::path(name).stem().string();
-    const auto digits = std::find_if(stem.rbegin(), stem.rend(), [](unsigned char c) { return !std::isdigit(c); });
-    int number = -1;
-    const char* const begin = stem.data() + (stem.rend() - digits);
-    const auto [end, status] = std::from_chars(begin, stem.data() + stem.size(), number);
-    return begin < stem.data() + stem.size() && status == std::errc() ? number : -1;
-}
+bool is_sky(float depth) { return depth >= 1e9f; }
 
 FrameSequence open_sequence(const SequenceJob& job) {
+    check(job);
     FrameSequence sequence;
-    sequence.find_files(job.folder);
+    sequence.find_files(job);
     sequence.find_channels(job);
     if (!job.meta.empty()) sequence.read_meta(job);
     return sequence;
 }
 
-void FrameSequence::find_files(const std::string& folder) {
-    if (!fs::is_directory(folder))
-        throw std::runtime_error(folder + ": is not a folder; name one with EXR files, or a scene");
-    std::vector<fs::path> paths;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".exr" && entry.path().filename().string()[0] != '.')
-            paths.push_back(entry.path());
-    if (paths.empty()) throw std::runtime_error(folder + ": holds no EXR files; name a folder with one per frame");
-    std::ranges::sort(paths, [](const fs::path& a, const fs::path& b) {
-        const int i = number_in(a.filename()), j = number_in(b.filename());
-        return i != j ? i < j : a < b;
+void FrameSequence::find_files(const SequenceJob& job) {
+    if (is_file_pattern(job.color)) {
+        const FilePattern pattern = parse_file_pattern("color", job.color);
+        files_ = files_of(pattern, job.folder);
+        if (files_.empty())
+            throw std::runtime_error(
+                fmt::format("{}: holds no {}; name the files of the colour by --color", job.folder, pattern.name()));
+    } else {
+        files_ = exr_files_in(job.folder);
+        for (const std::string* text : {&job.depth, &job.motion}) {
+            if (!is_file_pattern(*text)) continue;
+            const FilePattern pattern = parse_file_pattern("", *text);
+            if (pattern.folder.empty())  // other folders hold none of these
+                std::erase_if(files_, [&](const FrameFile& f) { return pattern.number_of(f.name) >= 0; });
+        }
+        if (files_.empty())
+            throw std::runtime_error(job.folder + ": holds no EXR files; name a folder with one per frame");
+    }
+    std::ranges::sort(files_, [](const FrameFile& a, const FrameFile& b) {
+        return a.number != b.number ? a.number < b.number : a.name < b.name;
     });
-    for (const fs::path& path : paths) {
-        const int number = number_in(path.filename().string());
-        if (!numbers_.empty() && numbers_.back() >= 0 && number > numbers_.back() + 1)
+    for (std::size_t i = 1; i < files_.size(); ++i) {
+        const FrameFile &before = files_[i - 1], &file = files_[i];
+        if (before.number < 0) continue;
+        if (file.number == before.number)
+            throw std::runtime_error(fmt::format(
+                "{}: {} and {} are both frame {}; name the files of the colour, as by --color color_####.exr",
+                job.folder, before.name, file.name, file.number));
+        if (file.number > before.number + 1)
             throw std::runtime_error(fmt::format("{}: frame {} is missing between {} and {}; render it, or cut there",
-                                                 folder, numbers_.back() + 1, names_.back(), path.filename().string()));
-        files_.push_back(path.string());
-        names_.push_back(path.filename().string());
-        numbers_.push_back(number);
+                                                 job.folder, before.number + 1, before.name, file.name));
     }
 }
 
+/// Finds the file of each frame; none where `text` names channels, not files.
+FrameSequence::Buffer FrameSequence::files_of_buffer(const std::string& option, const std::string& text,
+                                                     const std::string& folder) const {
+    if (!is_file_pattern(text)) return {{}, color_.channel_names};
+    const FilePattern pattern = parse_file_pattern(option, text);
+    const std::vector<FrameFile> all = files_of(pattern, folder);
+    Buffer buffer;
+    for (const FrameFile& file : files_) {
+        const auto found = std::ranges::find(all, file.number, &FrameFile::number);
+        if (found == all.end())
+            throw std::runtime_error(
+                fmt::format("{}: there is no {} for {}, as --{} {} asks; render it, or cut there", folder,
+                            file.number < 0 ? pattern.name() : pattern.name_of(file.number), file.name, option, text));
+        buffer.paths.push_back(found->path);
+    }
+    buffer.channel_names = ImageReader(buffer.paths.front(), 1).info().channel_names;
+    return buffer;
+}
+
 void FrameSequence::find_channels(const SequenceJob& job) {
-    const std::string& first = files_.front();
+    const std::string& first = files_.front().path;
     const ImageReader reader(first, 1);
-    const std::vector<std::string>& names = channel_names_ = reader.info().channel_names;
+    const std::vector<std::string>& names = color_.channel_names = reader.info().channel_names;
     width_ = reader.info().width, height_ = reader.info().height;
-    conventions_ = job.conventions == "auto" ? guessed_conventions(names) : job.conventions;
+    depth_ = files_of_buffer("depth", job.depth, job.folder);
+    motion_ = files_of_buffer("motion", job.motion, job.folder);
+    std::vector<std::string> all = names;
+    all.insert(all.end(), motion_.channel_names.begin(), motion_.channel_names.end());
+    conventions_ = job.conventions == "auto" ? guessed_conventions(all) : job.conventions;
     const NamedConvention& convention = convention_called(conventions_);
     convention_ = convention.motion;
     if (job.motion_units) convention_.units = *job.motion_units;
     if (job.is_previous_minus_current) convention_.is_previous_minus_current = *job.is_previous_minus_current;
     if (job.is_y_up) convention_.is_y_up = *job.is_y_up;
+    convention_.are_axes_swapped = job.are_axes_swapped, convention_.includes_jitter = job.includes_jitter;
+    convention_.jitter_sign = job.jitter_sign, convention_.is_jitter_y_up = job.is_jitter_y_up;
 
-    color_ =
-        job.color.empty() ? first_of(names, {"R", "Combined.R"}) : channel_asked(names, job.color, "R", first, "color");
-    if (color_ < 0)
+    const std::string color = channel_in(job.color), depth = channel_in(job.depth);
+    color_.first =
+        color.empty() ? first_of(names, {"R", "Combined.R"}) : channel_asked(names, color, "R", first, "color");
+    if (color_.first < 0)
         throw std::runtime_error(
             fmt::format("{}: has no channel R; name the colour by --color; it has {}", first, fmt::join(names, ", ")));
-    check_adjacent(names, color_, {"R", "G", "B"}, first);
-    const auto alpha = static_cast<std::size_t>(color_) + 3;
-    if (alpha < names.size() && (names[alpha] == "A" || names[alpha].ends_with(".A"))) alpha_ = color_ + 3;
-    depth_ = job.depth.empty() ? first_of(names, {"Depth.Z", "Depth.V", "Z", "depth"})
-                               : channel_asked(names, job.depth, "Z", first, "depth");
-    motion_ = job.motion.empty() ? channel_called(names, std::string(convention.motion_channel) + ".X")
-                                 : channel_asked(names, job.motion, "X", first, "motion");
-    if (motion_ >= 0) check_adjacent(names, motion_, {"X", "Y"}, first);
+    check_adjacent(names, color_.first, {"R", "G", "B"}, first);
+    const auto alpha = static_cast<std::size_t>(color_.first) + 3;
+    if (alpha < names.size() && (names[alpha] == "A" || names[alpha].ends_with(".A"))) alpha_ = color_.first + 3;
+
+    const std::string& depth_file = depth_.paths.empty() ? first : depth_.paths.front();
+    depth_.first = depth.empty() ? first_of(depth_.channel_names, {"Depth.Z", "Depth.V", "Z", "depth"})
+                                 : channel_asked(depth_.channel_names, depth, "Z", depth_file, "depth");
+    if (depth_.first < 0 && !depth_.paths.empty()) {
+        if (depth_.channel_names.size() > 1)
+            throw std::runtime_error(
+                fmt::format("{}: has no channel Z; name the depth's, as --depth {}:NAME; it has {}", depth_file,
+                            job.depth, fmt::join(depth_.channel_names, ", ")));
+        depth_.first = 0;
+    }
+    find_motion(job, convention.motion_channel);
+}
+
+/// In files of their own, vectors may have any of the names in use, or be a picture's red and green.
+void FrameSequence::find_motion(const SequenceJob& job, std::string_view layer) {
+    const std::vector<std::string>& names = motion_.channel_names;
+    const bool is_own = !motion_.paths.empty();
+    const std::string& file = is_own ? motion_.paths.front() : files_.front().path;
+    const std::string asked = channel_in(job.motion), usual = std::string(layer) + ".X";
+    motion_.first = asked.empty() ? channel_called(names, usual) : channel_asked(names, asked, "X", file, "motion");
+    if (motion_.first < 0 && is_own) motion_.first = first_of(names, {"X", "R"});
+    if (motion_.first < 0 && is_own)
+        throw std::runtime_error(
+            fmt::format("{}: has no channel {}, X or R; name the motion's, as --motion {}:NAME; it "
+                        "has {}",
+                        file, usual, job.motion, fmt::join(names, ", ")));
+    if (motion_.first < 0) return;
+    const std::string& x = names[static_cast<std::size_t>(motion_.first)];
+    if (is_own && (x == "R" || x.ends_with(".R"))) check_adjacent(names, motion_.first, {"R", "G"}, file);
+    else check_adjacent(names, motion_.first, {"X", "Y"}, file);
 }
 
 void FrameSequence::read_meta(const SequenceJob& job) {
@@ -211,56 +250,77 @@ void FrameSequence::read_meta(const SequenceJob& job) {
     }
 }
 
-SequenceFrame FrameSequence::read(int i, int threads) const {
-    const std::string& path = files_[static_cast<std::size_t>(i)];
+Point FrameSequence::stored_jitter(int i) const {
+    return jitter_.empty() ? Point{} : jitter_[static_cast<std::size_t>(i) % jitter_.size()];
+}
+
+/// All channels of the file that a buffer of frame `i` is in.
+Image<float> FrameSequence::read_all(const Buffer& buffer, int i, int threads) const {
+    const std::string& path =
+        buffer.paths.empty() ? files_[static_cast<std::size_t>(i)].path : buffer.paths[static_cast<std::size_t>(i)];
     ImageReader reader(path, threads);
     const ImageInfo& info = reader.info();
     if (info.width != width_ || info.height != height_)
         throw std::runtime_error(fmt::format("{}: is {} x {}, and {} is {} x {}; render all frames in one size", path,
-                                             info.width, info.height, names_.front(), width_, height_));
-    if (info.channel_names != channel_names_)
-        throw std::runtime_error(fmt::format("{}: has the channels {}, and {} has {}; render all frames alike", path,
-                                             fmt::join(info.channel_names, ", "), names_.front(),
-                                             fmt::join(channel_names_, ", ")));
+                                             info.width, info.height, files_.front().name, width_, height_));
+    if (info.channel_names != buffer.channel_names)
+        throw std::runtime_error(
+            fmt::format("{}: has the channels {}, and {} has {}; render all frames alike", path,
+                        fmt::join(info.channel_names, ", "),
+                        fs::path(buffer.paths.empty() ? files_.front().path : buffer.paths.front()).filename().string(),
+                        fmt::join(buffer.channel_names, ", ")));
     Image<float> all(width_, height_, info.channels(), Layout::interleaved);
     PictureRows rows(reader, {}, false, height_);
     rows.read(0, all.view(), {threads});
-    const auto part = [&](int first, int count) {
-        View<float> view = all.view();
-        view.data += first, view.channels = count;
-        Image<float> copy(width_, height_, count, Layout::interleaved);
-        for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x)
-                for (int c = 0; c < count; ++c) copy.view()(x, y, c) = view(x, y, c);
-        return copy;
+    return all;
+}
+
+SequenceFrame FrameSequence::read_stored(int i, int threads) const {
+    const Image<float> all = read_all(color_, i, threads);
+    const auto part = [&](const Buffer& buffer, int count) {
+        return buffer.paths.empty() ? channels_copied(all.view(), buffer.first, count)
+                                    : channels_copied(read_all(buffer, i, threads).view(), buffer.first, count);
     };
     SequenceFrame frame;
     frame.color = part(color_, alpha_ >= 0 ? 4 : 3);
-    if (depth_ >= 0) frame.depth = part(depth_, 1);
-    if (!jitter_.empty()) frame.jitter = jitter_[static_cast<std::size_t>(i) % jitter_.size()];
-    if (depth_ >= 0)
-        for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x)
-                if (std::isnan(frame.depth.view()(x, y)))
-                    throw std::runtime_error(
-                        fmt::format("{}: the depth at {}, {} is not a number; render it again", path, x, y));
-    if (motion_ < 0) return frame;
-    frame.motion = part(motion_, 2);
-    const double sign = convention_.is_previous_minus_current ? 1 : -1;
-    const auto unit = [&](int length) {
-        return sign * (convention_.units == MotionConvention::Units::pixels ? 1
-                       : convention_.units == MotionConvention::Units::uv   ? length
-                                                                            : length / 2.0);
-    };
-    const auto scale_x = static_cast<float>(unit(width_));
-    const auto scale_y = static_cast<float>(unit(height_) * (convention_.is_y_up ? -1 : 1));
+    frame.jitter = stored_jitter(i);
+    if (has_motion()) frame.motion = part(motion_, 2);
+    if (!has_depth()) return frame;
+    frame.depth = part(depth_, 1);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if (std::isnan(frame.depth.view()(x, y)))
+                throw std::runtime_error(fmt::format("{}: the depth at {}, {} is not a number; render it again",
+                                                     depth_.paths.empty() ? files_[static_cast<std::size_t>(i)].path
+                                                                          : depth_.paths[static_cast<std::size_t>(i)],
+                                                     x, y));
+    return frame;
+}
+
+SequenceFrame FrameSequence::read(int i, int threads) const {
+    SequenceFrame frame = read_stored(i, threads);
+    frame.jitter = convention_.jitter_of(frame.jitter);
+    if (!has_motion()) return frame;
+    convert_motion(frame, i);
+    if (has_depth() && i > 0 && !cameras_.empty()) move_sky(frame, i);
+    return frame;
+}
+
+/// From what the files mean to previous minus current, in pixels, y down, without the jitter.
+void FrameSequence::convert_motion(SequenceFrame& frame, int i) const {
+    Point jitter_step;
+    if (convention_.includes_jitter && i > 0) {
+        const Point before = convention_.jitter_of(stored_jitter(i - 1));
+        jitter_step = {frame.jitter.x - before.x, frame.jitter.y - before.y};
+    }
+    const View<float> motion = frame.motion.view();
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            frame.motion.view()(x, y, 0) *= scale_x;
-            frame.motion.view()(x, y, 1) *= scale_y;
+            const Point stored{double(motion(x, y, 0)), double(motion(x, y, 1))};
+            const Point converted = convention_.motion_of(stored, width_, height_);
+            motion(x, y, 0) = static_cast<float>(converted.x - jitter_step.x);
+            motion(x, y, 1) = static_cast<float>(converted.y - jitter_step.y);
         }
-    if (depth_ >= 0 && i > 0 && !cameras_.empty()) move_sky(frame, i);
-    return frame;
 }
 
 /// What is infinitely far away moves as the camera turns, which renderers leave out.
@@ -268,7 +328,7 @@ void FrameSequence::move_sky(SequenceFrame& frame, int i) const {
     const Camera &now = cameras_[static_cast<std::size_t>(i)], &before = cameras_[static_cast<std::size_t>(i) - 1];
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            if (static_cast<double>(frame.depth.view()(x, y)) < sky_from) continue;
+            if (!is_sky(frame.depth.view()(x, y))) continue;
             const double px = x + 0.5 + frame.jitter.x, py = y + 0.5 + frame.jitter.y;
             const double ndc_x = 2 * px / width_ - 1, ndc_y = 1 - 2 * py / height_;
             const double* const p = now.projection;

@@ -14,6 +14,7 @@
 #include "bandlimit/antialias/temporal_options.h"
 #include "bandlimit/io/image_file.h"
 #include "bandlimit/job/batch_manifest.h"
+#include "bandlimit/job/channels.h"
 #include "bandlimit/job/command.h"
 #include "bandlimit/job/option_error.h"
 #include "bandlimit/job/pictures.h"
@@ -39,14 +40,6 @@ struct Source {
 };
 
 int scaled(int length, double scale) { return std::max(1, static_cast<int>(std::lround(length * scale))); }
-
-Image<float> channels_copied(View<const float> all, int first, int count) {
-    Image<float> copy(all.width, all.height, count, Layout::interleaved);
-    for (int y = 0; y < all.height; ++y)
-        for (int x = 0; x < all.width; ++x)
-            for (int c = 0; c < count; ++c) copy.view()(x, y, c) = all(x, y, first + c);
-    return copy;
-}
 
 Source source_of_scene(const TemporalJob& job, const Context& context) {
     const int length = jitter_length(job.scale);
@@ -340,6 +333,7 @@ void check(const TemporalJob& job) {
     if (!(job.scale >= 1 && job.scale <= 4))
         throw OptionError("scale", fmt::format("{:g} is out of range; pass 1 to 4", job.scale));
     if (job.frames < 0) throw OptionError("frames", fmt::format("{} is below 0; pass how many to make", job.frames));
+    check(job.sequence);
     if (!is_scene(job.input)) return;
     if (job.width < 1 || job.height < 1)
         throw OptionError(
