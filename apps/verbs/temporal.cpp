@@ -202,8 +202,8 @@ void add_temporal(Program& program) {
                     "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)")
         .required();
     verb.add_option(
-            "OUTDIR", o->job.out,
-            "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was");
+        "OUTDIR", o->job.out,
+        "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was");
     verb.add_option("--size", o->size, "Size of the input, for scenes").type_name("WxH");
     verb.add_option_function<std::string>(
             "--scale", [o](const std::string& s) { o->job.scale = parse_number("--scale", s); },
