@@ -261,7 +261,7 @@ TEST(TemporalVerb, BuffersMustFitEachOther) {
 // A sequence that another program rendered: Blender, whose vectors have y up.
 TEST(TemporalVerb, ReadsWhatBlenderRendered) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    std::filesystem::copy(BANDLIMIT_EXAMPLES "/sequence", shell / "sequence");
+    std::filesystem::copy(BANDLIMIT_EXAMPLES "-temporal/sequence", shell / "sequence");
     const Outcome run = shell("temporal sequence out --meta sequence/meta.json --json");
     ASSERT_TRUE(succeeds(run));
     EXPECT_EQ(run.json()["conventions"], "blender");
@@ -284,7 +284,7 @@ TEST(TemporalVerb, ReadsWhatBlenderRendered) {
 
 // Of a rendered sequence, too, each of the 216 readings is told what to change.
 TEST(CheckConventionsVerb, FindsEveryFlipOfARenderedSequence) {
-    const std::string folder = BANDLIMIT_EXAMPLES "/sequence";
+    const std::string folder = BANDLIMIT_EXAMPLES "-temporal/sequence";
     const job::ConventionReport report =
         job::check_conventions(job::open_sequence({.folder = folder, .meta = folder + "/meta.json"}));
     const job::MotionConvention& right = job::convention_called("blender").motion;
