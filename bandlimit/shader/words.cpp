@@ -170,7 +170,8 @@ constexpr std::string_view cpp_before = R"(#ifndef BANDLIMIT_SHADER_TYPES
 #include <cmath>
 namespace bandlimit_shader {
 struct float2 {
-    float x, y;
+    float x = 0, y = 0;
+    constexpr float2() = default;
     constexpr float2(float x_, float y_) : x(x_), y(y_) {}
     template <class Integers>
     explicit constexpr float2(Integers v) : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)) {}
