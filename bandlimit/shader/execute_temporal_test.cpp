@@ -20,7 +20,7 @@ namespace {
 
 constexpr int in_width = 24, in_height = 16, frames = 6;
 
-/// Multiples of 1/64 that are odd: with motion in eighths of a pixel, no place lies half way between two samples, where
+/// Multiples of 1/64 that are odd: with motion in 32nds of a pixel, no place lies half way between two samples, where
 /// a rounding would decide which is nearer.
 Point jitter_of(int frame) {
     constexpr std::array<Point, frames> jitter{{{-15, 9}, {17, -21}, {5, 27}, {-27, -11}, {11, 3}, {29, -5}}};
@@ -30,7 +30,7 @@ Point jitter_of(int frame) {
 
 double exposure_of(int frame) { return frame < 4 ? 1 : 1.5; }
 
-/// What is seen at a place: a block that moves in front of waves, and a lamp.
+/// What is seen at a place: a block that moves in front of waves, a wire, a lamp, and a band that hardly moves.
 struct Seen {
     std::array<double, 3> color;
     double motion_x = 0, motion_y = 0, depth = 10, reactive = 0;
@@ -43,7 +43,10 @@ Seen scene(double x, double y, int frame) {
         const double wave = std::sin(2.1 * block_x) * std::sin(1.7 * block_y);
         return {{0.6 + 0.3 * wave, 0.3 - 0.2 * wave, 0.2 + 0.1 * std::sin(3 * block_y)}, -1.25, -0.5, 4};
     }
+    // As near as the block and hit by some frames only.
+    if (std::abs(x - 15.6) < 0.25 && y > 3 && y < 13) return {{0.9, 0.1, 0.3}, 0, 0, 4};
     if (std::hypot(x - 19, y - 5) < 1.6) return {{20, 14, 9}};
+    if (y < 2) return {{0.5 + 0.4 * std::sin(2.3 * (x - frame / 32.0)), 0.4, 0.2}, -1 / 32.0};
     const double wave = std::sin(1.3 * x + 0.4 * y), other = std::sin(0.7 * x - 1.9 * y);
     return {{0.5 + 0.3 * wave, 0.5 + 0.3 * other, 0.4 + 0.2 * wave * other}, 0, 0, 10, y > 13 ? 0.5 : 0};
 }
@@ -171,6 +174,8 @@ std::string frame_reader(const TemporalRun& run) {
 std::string functions(const TemporalRun& run, Dialect dialect) {
     return temporal_shader(run.options, {.name = "temporal"}, dialect);
 }
+return t_;
+}
 
 /// A compute shader of all functions: the next history, and below it what that shows.
 std::string wrapper(const TemporalRun& run, Dialect dialect) {
@@ -232,7 +237,8 @@ double most_along(const Kernel& kernel, double pitch, bool of_slopes) {
 }
 
 /// By how much the sums of `frame` may differ, where they are 1 or less, else in parts of them. In each frame
-///   places     are below 32 and rounded four times on the way, the weights move with them, along both axes
+///   places     are below 32 and rounded four times on the way, the weights move with them, along both axes; at 1x and
+///              2x nothing is rounded, as jitter is in 64ths
 ///   weights    are off by 1e-7 by polynomials, exp() by 3 + 2 |x| units of the last place, x to -8 where weights are
 ///              small; a sum of up to 16 adds as many roundings
 ///   history    weights of Lanczos-2 are tables on the CPU, to 1e-6
@@ -245,7 +251,7 @@ double allowed_of_sums(const TemporalRun& run, int frame) {
     const double scale = double(run.width) / in_width;
     const double brightest = o.compresses_highlights ? 1 + std::log(20 * 1.5) : 20 * 1.5;
     const double sum = most_along(o.kernel, scale, false), slopes = most_along(o.kernel, scale, true);
-    const double places = 2 * slopes * sum * scale * 4 * 0x1p-20;
+    const double places = scale == std::floor(scale) ? 0 : 2 * slopes * sum * scale * 4 * 0x1p-20;
     const double weights = sum * sum * (2e-7 + (2 * 7 + 16) * unit);
     const double history = o.history_kernel == HistoryKernel::lanczos2 ? 4e-6 : 16 * unit;
     const double boxes = o.rectification == Rectification::none ? 0 : o.box_size * 12 * unit / (2 * 0.02);
@@ -322,6 +328,7 @@ std::vector<TemporalRun> all_runs() {
     five.still_frames = 3;
     return {balanced(),
             made("balanced at 1x", temporal_preset("balanced"), 1),
+            made("balanced at 2x", temporal_preset("balanced"), 2),
             made("fast", temporal_preset("fast"), 1.5),
             made("sharp", temporal_preset("sharp"), 1.5),
             made("reference", temporal_preset("reference"), 1.5),
