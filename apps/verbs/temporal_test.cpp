@@ -195,6 +195,22 @@ TEST(TemporalVerb, MotionHasADirection) {
     EXPECT_LT(error(last("")), error(last("--motion-direction current-previous")));
 }
 
+TEST(TemporalVerb, EmitsItsPassAsAShader) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome balanced = shell("temporal --emit wgsl");
+    EXPECT_TRUE(succeeds(balanced));
+    for (const char* part : {"fn temporal_step(", "fn temporal_show(", "Made by: bandlimit temporal --emit wgsl"})
+        EXPECT_NE(balanced.out.find(part), std::string::npos) << part;
+    const Outcome plain = shell("temporal --preset fast --set rectification=none --emit hlsl");
+    EXPECT_TRUE(succeeds(plain));
+    EXPECT_EQ(plain.out.find("temporal_rectified"), std::string::npos);
+    EXPECT_TRUE(fails(2, shell("temporal glyphs out --emit wgsl"), "INPUT"));
+    EXPECT_TRUE(fails(2, shell("temporal --emit wgsl --json"), "--json"));
+    EXPECT_TRUE(fails(2, shell("temporal --emit metal"), "msl"));
+    EXPECT_TRUE(fails(2, shell("temporal --preset per-frame --emit glsl"), "per-frame"));
+    EXPECT_TRUE(fails(2, shell("temporal"), "INPUT"));
+}
+
 TEST(TemporalVerb, RefusesWhatDoesNotFit) {
     const Shell shell(BANDLIMIT_PROGRAM);
     add_sequence(shell, "edge", "in", 3);

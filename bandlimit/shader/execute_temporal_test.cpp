@@ -45,8 +45,14 @@ Seen scene(double x, double y, int frame) {
     }
     // As near as the block and hit by some frames only.
     if (std::abs(x - 15.6) < 0.25 && y > 3 && y < 13) return {{0.9, 0.1, 0.3}, 0, 0, 4};
-    if (std::hypot(x - 19, y - 5) < 1.6) return {{20, 14, 9}};
-    if (y < 2) return {{0.5 + 0.4 * std::sin(2.3 * (x - frame / 32.0)), 0.4, 0.2}, -1 / 32.0};
+    if (std::hypot(x - 19, y - 5) < 1.6) {
+        const double glow = 1 + 0.25 * std::sin(2.3 * x + 1.9 * y);
+        return {{20 * glow, 14 * glow, 9 * glow}};
+    }
+    if (y < 2) {
+        const double wave = std::sin(2.3 * (x - frame / 32.0));
+        return {{0.5 + 0.4 * wave, 0.4 - 0.2 * wave, 0.2 + 0.1 * wave}, -1 / 32.0};
+    }
     const double wave = std::sin(1.3 * x + 0.4 * y), other = std::sin(0.7 * x - 1.9 * y);
     return {{0.5 + 0.3 * wave, 0.5 + 0.3 * other, 0.4 + 0.2 * wave * other}, 0, 0, 10, y > 13 ? 0.5 : 0};
 }
@@ -174,8 +180,6 @@ std::string frame_reader(const TemporalRun& run) {
 std::string functions(const TemporalRun& run, Dialect dialect) {
     return temporal_shader(run.options, {.name = "temporal"}, dialect);
 }
-return t_;
-}
 
 /// A compute shader of all functions: the next history, and below it what that shows.
 std::string wrapper(const TemporalRun& run, Dialect dialect) {
@@ -242,21 +246,22 @@ double most_along(const Kernel& kernel, double pitch, bool of_slopes) {
 ///   weights    are off by 1e-7 by polynomials, exp() by 3 + 2 |x| units of the last place, x to -8 where weights are
 ///              small; a sum of up to 16 adds as many roundings
 ///   history    weights of Lanczos-2 are tables on the CPU, to 1e-6
-///   boxes      are roots of variances that 12 roundings leave, of places whose deviation is .02 at least
+///   boxes      are roots of variances, which are off by 12 roundings; nothing here is flat: deviations are 1/50 of the
+///              colour at least
 /// and a frame passes on what the history was off by: as much at most as its kernel's weights sum to without signs, 1.27
 /// along each axis.
 double allowed_of_sums(const TemporalRun& run, int frame) {
     constexpr double unit = 0x1p-24, passed_on = 1.27 * 1.27;
     const TemporalOptions& o = run.options;
     const double scale = double(run.width) / in_width;
-    const double brightest = o.compresses_highlights ? 1 + std::log(20 * 1.5) : 20 * 1.5;
+    const double brightest = o.compresses_highlights ? 1 + std::log(25 * 1.5) : 25 * 1.5;
     const double sum = most_along(o.kernel, scale, false), slopes = most_along(o.kernel, scale, true);
     const double places = scale == std::floor(scale) ? 0 : 2 * slopes * sum * scale * 4 * 0x1p-20;
     const double weights = sum * sum * (2e-7 + (2 * 7 + 16) * unit);
     const double history = o.history_kernel == HistoryKernel::lanczos2 ? 4e-6 : 16 * unit;
     const double boxes = o.rectification == Rectification::none ? 0 : o.box_size * 12 * unit / (2 * 0.02);
     double allowed = 0;
-    for (int f = 0; f <= frame; ++f) allowed = passed_on * allowed + brightest * (places + weights + history) + boxes;
+    for (int f = 0; f <= frame; ++f) allowed = passed_on * allowed + brightest * (places + weights + history + boxes);
     return allowed;
 }
 

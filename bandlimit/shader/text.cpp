@@ -90,13 +90,11 @@ std::string polynomial(const KernelPiece& piece) {
 }
 
 std::string weight_function(const KernelPieces& pieces) {
-    std::string value = "0.0";
-    for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece)
-        value =
-            message("choose(x < ", number(piece->end), ",\n        ", polynomial(*piece), ",\n        ", value, ")");
-    return "function(float, NAME_weight, in(float, distance)) {\n    let(float, x) = max(distance, -distance);\n"
-           "    return " +
-           value + ";\n}\n\n";
+    std::string text =
+        "function(float, NAME_weight, in(float, distance)) {\n    let(float, x) = max(distance, -distance);\n";
+    for (const KernelPiece& piece : pieces)
+        text += message("    if (x < ", number(piece.end), ") {\n        return ", polynomial(piece), ";\n    }\n");
+    return text + "    return 0.0;\n}\n\n";
 }
 
 std::string number(double value, int digits) {
