@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include "apps/console/common.h"
@@ -12,6 +14,7 @@
 #include "apps/verbs/convention_check.h"
 #include "apps/verbs/temporal_page.h"
 #include "bandlimit/antialias/temporal_options.h"
+#include "bandlimit/antialias/temporal_shader.h"
 #include "bandlimit/job/command.h"
 #include "bandlimit/job/temporal.h"
 #include "bandlimit/scene/scene.h"
@@ -26,6 +29,7 @@ struct Options {
     std::string size, report, units, direction, y_axis, jitter = "halton";
     std::string axes, motion_jitter, jitter_sign, jitter_y;
     std::vector<std::string> set;  ///< NAME=VALUE
+    std::optional<Dialect> emit;   ///< a shader in place of frames
     Parallel parallel;
     bool json = false, checks_conventions = false;
 };
@@ -92,7 +96,25 @@ job::TemporalJob job_of(const Options& o) {
     return job;
 }
 
+/// The pass of a frame as shader source, by the same options.
+std::string shader_of(const Options& o, const std::string& command) {
+    return temporal_shader(options_of(o), {.name = "temporal", .command = command}, *o.emit);
+}
+
+void check_emit(const Options& o) {
+    if (!o.job.input.empty())
+        throw UsageError("--emit prints a shader and reads no frames; leave out INPUT and OUTDIR");
+    if (o.json || !o.report.empty()) throw UsageError("--emit prints a shader only; leave out --json and --report");
+    if (const Accumulation rule = options_of(o).rule; rule != Accumulation::weighted)
+        throw UsageError(fmt::format("--emit: the rule {} has no shader; choose another --preset", name_of(rule)));
+    shader_of(o, "");
+}
+
 void check(const Options& o) {
+    if (o.emit) return check_emit(o);
+    if (o.job.input.empty()) throw UsageError("INPUT is missing; see bandlimit temporal --help");
+    if (o.job.out.empty() && !o.checks_conventions)
+        throw UsageError("OUTDIR is missing; see bandlimit temporal --help");
     const job::TemporalJob job = job_of(o);
     const std::vector<std::string_view> conventions = job::convention_names();
     if (std::find(conventions.begin(), conventions.end(), job.sequence.conventions) == conventions.end())
@@ -103,7 +125,6 @@ void check(const Options& o) {
     job::check(job);
     if (o.checks_conventions && is_scene(job.input))
         throw UsageError("--check-conventions: scenes have ours; name a folder of frames");
-    if (!o.checks_conventions && job.out.empty()) throw UsageError("OUTDIR is required; name a folder for the frames");
     if (o.report.empty()) return;
     // The report may lie in the folder of the frames, which is made once these are known to be readable.
     namespace fs = std::filesystem;
@@ -165,6 +186,7 @@ void print_measures(Console& console, const job::TemporalReport& r) {
 }
 
 void run(const Options& o, Console& console, const std::string& command) {
+    if (o.emit) return console.write(shader_of(o, command));
     const job::TemporalJob job = job_of(o);
     if (o.checks_conventions) return check_conventions(job.input, job.sequence, o.parallel, o.json, console);
     const job::TemporalReport report = job::temporal(job, context_of(console, o.parallel));
@@ -197,10 +219,10 @@ void add_temporal(Program& program) {
         "bandlimit temporal glyphs smooth --size 48x32 --scale 2 --report smooth/report\n"
         "Others:\n"
         "  bandlimit temporal render smooth --meta render/meta.json --reference truth --report report\n"
-        "  bandlimit temporal render --meta render/meta.json --check-conventions");
+        "  bandlimit temporal render --meta render/meta.json --check-conventions\n"
+        "  bandlimit temporal --preset fast --emit wgsl");
     verb.add_option("INPUT", o->job.input,
-                    "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)")
-        .required();
+                    "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)");
     verb.add_option(
         "OUTDIR", o->job.out,
         "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was");
@@ -214,6 +236,11 @@ void add_temporal(Program& program) {
                     "per-frame and input-sized: the plain rules, to compare with")
         .type_name("P");
     verb.add_option("--set", o->set, help_of_set()).type_name("NAME=VALUE").one_at_a_time();
+    verb.add_option_function<std::string>(
+            "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
+            "Print shader source instead, by --preset and --set: functions that take a frame into the history and\n"
+            "show it. Needs no INPUT and OUTDIR")
+        .type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     verb.add_option("--frames", o->job.frames, "How many frames; default all, of scenes a period of the jitter")
         .type_name("N");
     verb.add_option("--jitter", o->jitter, "Jitter of scenes: halton (default), r2, rotated or sobol").type_name("J");
