@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "bandlimit/io/atomic_file.h"
+
 namespace bandlimit::app {
 namespace {
 
@@ -110,6 +112,12 @@ std::string Page::html() const {
         "<body><h1>{}</h1>\n<p>{}</p>\n<div class=\"numbers\">{}</div>\n<ol "
         "class=\"contents\">{}</ol>\n{}</body></html>\n",
         escaped(title_), style, escaped(title_), escaped(introduction_), numbers, contents_, body_);
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    AtomicFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
 }
 
 }  // namespace bandlimit::app

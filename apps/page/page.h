@@ -46,4 +46,7 @@ private:
     int sections_ = 0;
 };
 
+/// A file of text, which appears whole or not at all. Throws std::runtime_error.
+void write_text(const std::string& path, const std::string& text);
+
 }  // namespace bandlimit::app

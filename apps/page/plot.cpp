@@ -117,19 +117,21 @@ Frame frame_of(const std::vector<Panel>& panels, int width) {
     return frame;
 }
 
-/// Samples stand at whole numbers, from 0 on.
 std::string map_commands(const HeatMap& map) {
     std::string text = "$map << EOD\n";
     for (std::size_t i = 0; i < map.values.size(); ++i)
         text += fmt::format("{:.5g}{}", map.values[i], (i + 1) % static_cast<std::size_t>(map.width) ? ' ' : '\n');
+    const auto edge = [&](double i) { return map.first + (i - 0.5) * map.step; };
+    text += fmt::format("EOD\nunset key\nset size ratio -1\nset xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n",
+                        edge(0), edge(map.width), edge(map.height), edge(0));
     return text + fmt::format(
-                      "EOD\nunset key\nset size ratio -1\nset xrange [-0.5:{}-0.5]\nset yrange [{}-0.5:-0.5]\n"
-                      "set cbrange [{:.9g}:{:.9g}]\n"
+                      "set cbrange [{0:.9g}:{1:.9g}]\n"
                       "set palette defined (-1 \"#08306b\", -0.5 \"#56b4e9\", 0 \"#ffffff\", 0.5 \"#e69f00\", "
                       "1 \"#7f1d00\")\n"
                       "set colorbox user origin graph 1.03, graph 0 size graph 0.04, graph 1\n"
-                      "plot $map matrix with image notitle\nset size noratio\n",
-                      map.width, map.height, -map.peak, map.peak);
+                      "plot $map matrix using ({2:.9g} + {3:.9g} * $1):({2:.9g} + {3:.9g} * $2):3 with image notitle\n"
+                      "set size noratio\n",
+                      -map.peak, map.peak, map.first, map.step);
 }
 
 std::string panel_commands(const Panel& panel, const Frame& frame, int height) {

@@ -36,6 +36,7 @@ struct HeatMap {
     int width = 0, height = 0;
     std::vector<double> values = {};  ///< row after row
     double peak = 1;                  ///< the magnitude of the deepest colours
+    double first = 0, step = 1;       ///< where the first column and row are on the axes, and how far the next is
 };
 
 /// One pair of axes. Labels say the unit.

@@ -24,12 +24,15 @@ struct Tour {
     }
 };
 
-void tour_lanczos(Tour& tour);  ///< Lanczos in two dimensions
-void tour_grids(Tour& tour);    ///< down- and upsampling, and where the samples lie
-void tour_splines(Tour& tour);  ///< linear, quadratic and cubic interpolation
-void tour_images(Tour& tour);   ///< zone plate, kernels of auto, star, photograph
-void tour_mips(Tour& tour);     ///< mip maps: light, coverage, normals, motion
-void tour_audit(Tour& tour);    ///< what other resizers do
-void tour_design(Tour& tour);   ///< designed filters: few reads, low rank, phasors, bokeh
+void tour_lanczos(Tour& tour);        ///< Lanczos in two dimensions
+void tour_grids(Tour& tour);          ///< down- and upsampling, and where the samples lie
+void tour_splines(Tour& tour);        ///< linear, quadratic and cubic interpolation
+void tour_images(Tour& tour);         ///< zone plate, kernels of auto, star, photograph
+void tour_mips(Tour& tour);           ///< mip maps: light, coverage, normals, motion
+void tour_audit(Tour& tour);          ///< what other resizers do
+void tour_design(Tour& tour);         ///< designed filters: few reads, low rank, phasors, bokeh
+void tour_supersampling(Tour& tour);  ///< aliasing, patterns of samples, half of the samples
+void tour_temporal(Tour& tour);       ///< accumulation over time, at 1x and 2x
+void tour_raster(Tour& tour);         ///< prefiltered points, lines and discs, seams
 
 }  // namespace bandlimit::app

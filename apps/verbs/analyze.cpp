@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <variant>
 
 #include <nlohmann/json.hpp>
 #include "apps/console/common.h"
+#include "apps/page/pattern_plot.h"
 #include "apps/page/plot.h"
 #include "bandlimit/analysis/response.h"
 #include "bandlimit/job/analyze.h"
@@ -304,44 +304,6 @@ void print(Console& console, const job::PatternAnalysis& r) {
     console.print("\nleast distance between points {:.4f} pixels\n", r.least_distance);
     if (r.star_discrepancy)
         console.print("discrepancy: star {:.4f}, L2 {:.5f}\n", *r.star_discrepancy, *r.l2_discrepancy);
-}
-
-Panel points_panel(const SamplePattern& pattern) {
-    Panel panel{pattern.name, "x (pixels from the centre)", "y, downwards", {{"", {}, {}, Series::Style::points}}};
-    double reach = 0.5;
-    for (const Point& p : pattern.points) {
-        panel.series.front().x.push_back(p.x);
-        panel.series.front().y.push_back(p.y);
-        reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
-    }
-    panel.x_range = Range{-reach, reach};
-    panel.y_range = Range{reach, -reach};
-    return panel;
-}
-
-/// Coverage as an edge goes over the pixel, along x and in the two directions that differ most where patterns lean.
-Panel coverage_panel(const SamplePattern& pattern) {
-    Panel panel{"coverage by an edge", "distance of the edge from the centre (pixels)", "share of the points", {}};
-    for (const double degrees : {0.0, 26.565, -26.565}) {
-        const double radians = degrees * std::numbers::pi / 180;
-        const auto coverage = [&](double t) {
-            const auto covered = std::count_if(pattern.points.begin(), pattern.points.end(), [&](const Point& p) {
-                return p.x * std::cos(radians) + p.y * std::sin(radians) < t;
-            });
-            return double(covered) / pattern.count();
-        };
-        panel.series.push_back(curve(fmt::format("{:.4g} deg.", degrees), -0.75, 0.75, 600, coverage));
-    }
-    return panel;
-}
-
-Panel spectrum_panel(const SamplePattern& pattern) {
-    constexpr int highest = 12, per_cycle = 4;
-    PatternSpectrum spectrum = pattern_spectrum(pattern.points, highest, per_cycle);
-    constexpr double peak = 4;  // times what random points have
-    for (double& power : spectrum.power) power = std::min(power, peak);
-    return {fmt::format("spectrum, up to {} cycles per pixel", highest),  "frequency along x", "along y", {}, {}, {},
-            HeatMap{spectrum.width, spectrum.width, spectrum.power, peak}};
 }
 
 void run_pattern(const Options& o, Console& console) {

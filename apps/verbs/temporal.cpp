@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include "apps/console/common.h"
 #include "apps/page/page.h"
-#include "apps/page/plot.h"
 #include "apps/verbs/convention_check.h"
+#include "apps/verbs/temporal_page.h"
 #include "bandlimit/antialias/temporal_options.h"
-#include "bandlimit/io/atomic_file.h"
+#include "bandlimit/antialias/temporal_shader.h"
 #include "bandlimit/job/command.h"
-#include "bandlimit/job/pictures.h"
 #include "bandlimit/job/temporal.h"
 #include "bandlimit/scene/scene.h"
 
@@ -28,6 +29,7 @@ struct Options {
     std::string size, report, units, direction, y_axis, jitter = "halton";
     std::string axes, motion_jitter, jitter_sign, jitter_y;
     std::vector<std::string> set;  ///< NAME=VALUE
+    std::optional<Dialect> emit;   ///< a shader in place of frames
     Parallel parallel;
     bool json = false, checks_conventions = false;
 };
@@ -94,7 +96,25 @@ job::TemporalJob job_of(const Options& o) {
     return job;
 }
 
+/// The pass of a frame as shader source, by the same options.
+std::string shader_of(const Options& o, const std::string& command) {
+    return temporal_shader(options_of(o), {.name = "temporal", .command = command}, *o.emit);
+}
+
+void check_emit(const Options& o) {
+    if (!o.job.input.empty())
+        throw UsageError("--emit prints a shader and reads no frames; leave out INPUT and OUTDIR");
+    if (o.json || !o.report.empty()) throw UsageError("--emit prints a shader only; leave out --json and --report");
+    if (const Accumulation rule = options_of(o).rule; rule != Accumulation::weighted)
+        throw UsageError(fmt::format("--emit: the rule {} has no shader; choose another --preset", name_of(rule)));
+    shader_of(o, "");
+}
+
 void check(const Options& o) {
+    if (o.emit) return check_emit(o);
+    if (o.job.input.empty()) throw UsageError("INPUT is missing; see bandlimit temporal --help");
+    if (o.job.out.empty() && !o.checks_conventions)
+        throw UsageError("OUTDIR is missing; see bandlimit temporal --help");
     const job::TemporalJob job = job_of(o);
     const std::vector<std::string_view> conventions = job::convention_names();
     if (std::find(conventions.begin(), conventions.end(), job.sequence.conventions) == conventions.end())
@@ -105,7 +125,6 @@ void check(const Options& o) {
     job::check(job);
     if (o.checks_conventions && is_scene(job.input))
         throw UsageError("--check-conventions: scenes have ours; name a folder of frames");
-    if (!o.checks_conventions && job.out.empty()) throw UsageError("OUTDIR is required; name a folder for the frames");
     if (o.report.empty()) return;
     // The report may lie in the folder of the frames, which is made once these are known to be readable.
     namespace fs = std::filesystem;
@@ -121,6 +140,7 @@ ordered_json number_or_null(const std::optional<double>& value) {
 
 ordered_json json_of(const Options& o, const job::TemporalJob& job, const job::TemporalReport& r) {
     ordered_json frames = ordered_json::array();
+    const auto first_made = static_cast<std::size_t>(r.continued_at);
     for (const job::TemporalFrameReport& f : r.frames)
         frames.push_back({{"frame", f.number},
                           {"file", f.file},
@@ -138,40 +158,35 @@ ordered_json json_of(const Options& o, const job::TemporalJob& job, const job::T
             {"mip_bias", r.mip_bias},
             {"threads", o.parallel.count()},
             {"seconds", r.seconds},
+            {"continued_at", r.continued_at > 0 ? ordered_json(r.frames[first_made].number) : ordered_json()},
+            {"ms_per_frame", mean_milliseconds(r)},
+            {"measured_frames", r.measured_frames},
+            {"flicker", number_or_null(r.measured.flicker)},
+            {"warped_difference", number_or_null(r.measured.warped_difference)},
+            {"ghosting",
+             {{"disoccluded", number_or_null(r.measured.error_disoccluded)},
+              {"elsewhere", number_or_null(r.measured.error_elsewhere)}}},
+            {"sharpness", number_or_null(sharpness(r))},
+            {"high_frequencies",
+             {{"output", number_or_null(r.high_frequencies)}, {"truth", number_or_null(r.high_frequencies_of_truth)}}},
             {"frames", frames}};
 }
 
-void write_text(const std::string& path, const std::string& text) {
-    AtomicFile file(path);
-    file.write(text.data(), text.size());
-    file.commit();
+/// What is known, a line each.
+void print_measures(Console& console, const job::TemporalReport& r) {
+    const TemporalMeasures& m = r.measured;
+    if (m.flicker)
+        console.print("  flicker   {:.2f} codes of 255, of what stands still, over the last {} frames\n",
+                      *m.flicker * 255, r.measured_frames);
+    if (m.error_disoccluded && m.error_elsewhere)
+        console.print("  ghosting  error {:.4f} in what came into view, {:.4f} elsewhere\n", *m.error_disoccluded,
+                      *m.error_elsewhere);
+    if (const std::optional<double> s = sharpness(r))
+        console.print("  sharpness {:.2f}: energy above half of Nyquist, against the truth's\n", *s);
 }
 
-/// The page beside report.json: the curve, the numbers, and the last frame.
-void write_page(const std::string& folder, const job::TemporalJob& job, const job::TemporalReport& r) {
-    Page page("bandlimit temporal",
-              fmt::format("{}, {} frames, {} x {} to {} x {}, preset {}.", job.input, r.frames.size(), r.in_width,
-                          r.in_height, r.width, r.height, job.preset));
-    page.section("Convergence", "PSNR to the truth in linear light, clamped to [0, 1], frame by frame.", {});
-    Series psnr{job.preset, {}, {}};
-    std::vector<std::vector<std::string>> rows{{"frame", "PSNR in dB", "SSIM", "ms"}};
-    for (const job::TemporalFrameReport& f : r.frames) {
-        if (f.psnr && std::isfinite(*f.psnr)) psnr.x.push_back(f.number), psnr.y.push_back(*f.psnr);
-        rows.push_back({f.file, f.psnr ? fmt::format("{:.2f}", *f.psnr) : "-",
-                        f.ssim ? fmt::format("{:.4f}", *f.ssim) : "-", fmt::format("{:.1f}", f.ms)});
-    }
-    if (!psnr.x.empty()) {
-        draw({{"Distance to the truth", "frame", "PSNR in dB", {psnr}}}, folder + "/psnr.svg", 640, 400);
-        page.figure("psnr.svg", "Higher is nearer to the truth.", "", 640);
-    }
-    const std::string last = (std::filesystem::path(job.out) / r.frames.back().file).string();
-    job::write_picture(folder + "/last.png", job::read_picture(last).view());
-    page.figure("last.png", "The last frame.", "", r.width);
-    page.table(rows, "All frames.", "");
-    write_text(folder + "/index.html", page.html());
-}
-
-void run(const Options& o, Console& console) {
+void run(const Options& o, Console& console, const std::string& command) {
+    if (o.emit) return console.write(shader_of(o, command));
     const job::TemporalJob job = job_of(o);
     if (o.checks_conventions) return check_conventions(job.input, job.sequence, o.parallel, o.json, console);
     const job::TemporalReport report = job::temporal(job, context_of(console, o.parallel));
@@ -179,17 +194,19 @@ void run(const Options& o, Console& console) {
     const ordered_json json = json_of(o, job, report);
     if (!folder.empty()) {
         write_text(folder + "/report.json", json.dump(2) + "\n");
-        write_page(folder, job, report);
+        write_temporal_page(folder, job, report, command);
     }
     if (o.json) return console.print_json(json);
     console.print("temporal: {} frames, {} x {} to {} x {}, {} conventions, preset {}\n", report.frames.size(),
                   report.in_width, report.in_height, report.width, report.height, report.conventions, job.preset);
+    if (report.continued_at > 0)
+        console.print("  continued at frame {}: the frames before it were there\n",
+                      report.frames[static_cast<std::size_t>(report.continued_at)].number);
     console.print("  mip bias  {:.2f}: what textures should be sampled with\n", report.mip_bias);
     const job::TemporalFrameReport& last = report.frames.back();
     if (last.psnr) console.print("  truth     PSNR {:.2f} dB, SSIM {:.4f} at {}\n", *last.psnr, *last.ssim, last.file);
-    double ms = 0;
-    for (const job::TemporalFrameReport& f : report.frames) ms += f.ms / double(report.frames.size());
-    console.print("  time      {:.1f} ms a frame\n", ms);
+    print_measures(console, report);
+    console.print("  time      {:.1f} ms a frame\n", mean_milliseconds(report));
     if (!folder.empty()) console.print("  report    {}/index.html\n", folder);
 }
 
@@ -202,11 +219,13 @@ void add_temporal(Program& program) {
         "bandlimit temporal glyphs smooth --size 48x32 --scale 2 --report smooth/report\n"
         "Others:\n"
         "  bandlimit temporal render smooth --meta render/meta.json --reference truth --report report\n"
-        "  bandlimit temporal render --meta render/meta.json --check-conventions");
+        "  bandlimit temporal render --meta render/meta.json --check-conventions\n"
+        "  bandlimit temporal --preset fast --emit wgsl");
     verb.add_option("INPUT", o->job.input,
-                    "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)")
-        .required();
-    verb.add_option("OUTDIR", o->job.out, "Folder for the frames, which are named like the input's");
+                    "A folder of EXR files, one a frame, or a scene (bandlimit pattern --help lists them)");
+    verb.add_option(
+        "OUTDIR", o->job.out,
+        "Folder for the frames, which are named like the input's. A run that was stopped goes on where it was");
     verb.add_option("--size", o->size, "Size of the input, for scenes").type_name("WxH");
     verb.add_option_function<std::string>(
             "--scale", [o](const std::string& s) { o->job.scale = parse_number("--scale", s); },
@@ -217,6 +236,11 @@ void add_temporal(Program& program) {
                     "per-frame and input-sized: the plain rules, to compare with")
         .type_name("P");
     verb.add_option("--set", o->set, help_of_set()).type_name("NAME=VALUE").one_at_a_time();
+    verb.add_option_function<std::string>(
+            "--emit", [o](const std::string& s) { o->emit = parse_dialect(s); },
+            "Print shader source instead, by --preset and --set: functions that take a frame into the history and\n"
+            "show it. Needs no INPUT and OUTDIR")
+        .type_name("glsl|hlsl|wgsl|msl|slang|cpp");
     verb.add_option("--frames", o->job.frames, "How many frames; default all, of scenes a period of the jitter")
         .type_name("N");
     verb.add_option("--jitter", o->jitter, "Jitter of scenes: halton (default), r2, rotated or sobol").type_name("J");
@@ -252,13 +276,16 @@ void add_temporal(Program& program) {
     verb.add_option("--reference", o->job.reference,
                     "Folder with the truth for each frame, of the output's size, paired by the number in its name")
         .type_name("DIR");
-    verb.add_option("--report", o->report, "Write report.json and a page with PSNR and SSIM over time to this folder")
+    verb.add_option(
+            "--report", o->report,
+            "Write report.json and a page to this folder: PSNR and SSIM over time, flicker, ghosting, sharpness,\n"
+            "an animation beside input and truth, and the weights, motion and rejection of the last frame")
         .type_name("DIR");
     add_threads(verb, o->parallel);
     add_json(verb, o->json);
     program.add_quiet(verb);
     program.on(
-        verb, [o] { check(*o); }, [o](Console& console) { run(*o, console); });
+        verb, [o] { check(*o); }, [o, &program](Console& console) { run(*o, console, program.command); });
 }
 
 }  // namespace bandlimit::app

@@ -43,6 +43,107 @@ TEST(TemporalVerb, UpscalesASceneTowardsItsTruth) {
     EXPECT_TRUE(std::filesystem::exists(shell / "out/frame_031.exr"));
 }
 
+TEST(TemporalVerb, ReportsMeasuresAndPictures) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome run = shell("temporal mover out --size 32x24 --scale 2 --frames 12 --report r --json");
+    ASSERT_TRUE(succeeds(run));
+    const json report = run.json();
+    EXPECT_EQ(report["measured_frames"], 6) << "half of all, less than a period of the jitter";
+    for (const char* key : {"flicker", "warped_difference", "sharpness", "ms_per_frame"})
+        EXPECT_GT(report[key].get<double>(), 0) << key;
+    EXPECT_GT(report["ghosting"]["disoccluded"].get<double>(), 0);
+    EXPECT_GT(report["ghosting"]["elsewhere"].get<double>(), 0);
+    EXPECT_LT(report["flicker"].get<double>(), 0.05);
+    EXPECT_TRUE(report["continued_at"].is_null());
+    const std::string page = bytes_of(shell / "r/index.html");
+    for (const char* picture :
+         {"animation", "sheet", "last", "weight", "memory", "rejection", "motion", "disocclusion"}) {
+        const std::string name = std::string(picture) + ".png";
+        EXPECT_NE(page.find("\"" + name + "\""), std::string::npos) << name;
+        EXPECT_GT(job::read_codes(shell / ("r/" + name)).width(), 0) << name;
+    }
+    const Image<float> strip = job::read_codes(shell / "r/animation.png"),
+                       sheet = job::read_codes(shell / "r/sheet.png");
+    EXPECT_EQ(strip.width(), 3 * 64 + 2 * 4);
+    EXPECT_EQ(strip.height(), 48);
+    EXPECT_EQ(sheet.width(), 8 * 64 + 7 * 4);
+    EXPECT_EQ(sheet.height(), 3 * 48 + 2 * 4);
+    EXPECT_NE(bytes_of(shell / "r/animation.png").find("acTL"), std::string::npos);
+}
+
+// Without a truth, and of a single frame, what is unknown is null.
+TEST(TemporalVerb, ReportsWhatIsKnown) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "fence", "in", 4);
+    const json report = shell("temporal in out --meta meta.json --report r --json").json();
+    EXPECT_TRUE(report["sharpness"].is_null());
+    EXPECT_TRUE(report["ghosting"]["elsewhere"].is_null());
+    EXPECT_TRUE(report["frames"][0]["psnr"].is_null());
+    EXPECT_TRUE(report["flicker"].is_number());
+    EXPECT_TRUE(report["high_frequencies"]["output"].is_number());
+    EXPECT_EQ(job::read_codes(shell / "r/animation.png").width(), 2 * 32 + 4);
+    const json single = shell("temporal in out --meta meta.json --frames 1 --report r --json").json();
+    EXPECT_TRUE(single["flicker"].is_null());
+    EXPECT_TRUE(single["warped_difference"].is_null());
+    EXPECT_EQ(single["measured_frames"], 0);
+}
+
+/// Writes NaN into the depth of a frame at (5, 7).
+void lose_depth(const std::string& path) {
+    ImageReader reader(path);
+    const ImageInfo info = reader.info();
+    AnyImage all = read_image(reader);
+    const auto depth = std::ranges::find(info.channel_names, "Depth.Z") - info.channel_names.begin();
+    std::get<Image<float>>(all).view()(5, 7, static_cast<int>(depth)) = std::numeric_limits<float>::quiet_NaN();
+    ImageTarget target = target_of(Depth::f32, info.width, info.height, info.channels());
+    target.channel_names = info.channel_names, target.transfer = Transfer::linear;
+    write_image(path, target, pixels(all));
+}
+
+// One line, the frames before, and nothing half-written.
+TEST(TemporalVerb, StopsAtAFrameThatIsBad) {
+    using Spoil = std::function<void(const Shell&)>;
+    const std::string bad = "in/f_103.exr";
+    const auto drawn = [&](const std::string& line) -> Spoil {
+        return [=](const Shell& shell) { ASSERT_TRUE(succeeds(shell(line))); };
+    };
+    const Spoil no_depth = [&](const Shell& shell) { lose_depth(shell / bad); };
+    const Spoil half = [&](const Shell& shell) {
+        const std::string bytes = bytes_of(shell / bad);
+        write_bytes(shell / bad, bytes.substr(0, bytes.size() / 2));
+    };
+    const Spoil empty = [&](const Shell& shell) { write_bytes(shell / bad, ""); };
+    const Spoil missing = [&](const Shell& shell) { std::filesystem::remove(shell / bad); };
+    const Spoil meta = [&](const Shell& shell) { write_bytes(shell / "meta.json", "{\"sequences\": {"); };
+    struct Case {
+        std::string word;
+        Spoil spoil;
+        int made;
+    };
+    const std::vector<Case> cases{
+        {"33 x 24", drawn("pattern mover " + bad + " --size 33x24 --spp 1"), 3},
+        {"has the channels", drawn("supersample mover " + bad + " --size 32x24 --pattern regular:1"), 3},
+        {"depth at 5, 7", no_depth, 3},
+        {"f_103.exr", half, 3},
+        {"f_103.exr", empty, 3},
+        {"frame 103 is missing", missing, 0},
+        {"not JSON", meta, 0}};
+    for (const Case& c : cases) {
+        const Shell shell(BANDLIMIT_PROGRAM);
+        add_sequence(shell, "mover", "in", 6);
+        c.spoil(shell);
+        EXPECT_TRUE(fails(1, shell("temporal in out --meta meta.json --report r"), c.word));
+        std::set<std::string> made, wanted;
+        if (std::filesystem::exists(shell / "out"))
+            for (const auto& entry : std::filesystem::directory_iterator(shell / "out"))
+                made.insert(entry.path().filename());
+        for (int i = 0; i < c.made; ++i) wanted.insert("f_10" + std::to_string(i) + ".exr");
+        if (c.made > 0) wanted.insert(".bandlimit-temporal");
+        EXPECT_EQ(made, wanted) << c.word;
+        EXPECT_FALSE(std::filesystem::exists(shell / "r")) << c.word;
+    }
+}
+
 // After a period, what is still is what the samples of all frames add up to: supersampling with that kernel.
 TEST(TemporalVerb, ReadsASequenceAndItsReference) {
     const Shell shell(BANDLIMIT_PROGRAM);
@@ -160,7 +261,7 @@ TEST(TemporalVerb, BuffersMustFitEachOther) {
 // A sequence that another program rendered: Blender, whose vectors have y up.
 TEST(TemporalVerb, ReadsWhatBlenderRendered) {
     const Shell shell(BANDLIMIT_PROGRAM);
-    std::filesystem::copy(BANDLIMIT_EXAMPLES "/sequence", shell / "sequence");
+    std::filesystem::copy(BANDLIMIT_EXAMPLES "-temporal/sequence", shell / "sequence");
     const Outcome run = shell("temporal sequence out --meta sequence/meta.json --json");
     ASSERT_TRUE(succeeds(run));
     EXPECT_EQ(run.json()["conventions"], "blender");
@@ -183,7 +284,7 @@ TEST(TemporalVerb, ReadsWhatBlenderRendered) {
 
 // Of a rendered sequence, too, each of the 216 readings is told what to change.
 TEST(CheckConventionsVerb, FindsEveryFlipOfARenderedSequence) {
-    const std::string folder = BANDLIMIT_EXAMPLES "/sequence";
+    const std::string folder = BANDLIMIT_EXAMPLES "-temporal/sequence";
     const job::ConventionReport report =
         job::check_conventions(job::open_sequence({.folder = folder, .meta = folder + "/meta.json"}));
     const job::MotionConvention& right = job::convention_called("blender").motion;
@@ -254,47 +355,62 @@ TEST(CheckConventionsVerb, FlagsAreHonoured) {
     const Image<float> two = job::read_picture(shell / "two/f_102.exr");
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 32; ++x) EXPECT_NEAR(one.view()(x, y), two.view()(x, y), 1e-4) << "vectors are rounded";
-}
 
-TEST(TemporalVerb, RefusesWhatDoesNotFit) {
-    const Shell shell(BANDLIMIT_PROGRAM);
-    add_sequence(shell, "edge", "in", 3);
-    struct Case {
-        int code;
-        std::string line, word;
-    };
-    std::ofstream(shell / "broken.json") << "{\"sequences\": ";
-    std::ofstream(shell / "other.json") << "{\"sequences\": {\"elsewhere\": {}}}";
-    std::ofstream(shell / "far.json") << "{\"sequences\": {\"in\": {\"jitter\": [[40, 0]]}}}";
-    std::filesystem::create_directory(shell / "empty");
-    for (const Case& c : {
-             Case{2, "temporal in", "OUTDIR"},
-             {2, "temporal in out --scale 5", "--scale: "},
-             {2, "temporal in out --scale nan", "--scale"},
-             {2, "temporal in out --preset ultra", "balanced"},
-             {2, "temporal in out --set speed=1", "still-frames"},
-             {2, "temporal in out --set alpha=2", "alpha = 2"},
-             {2, "temporal in out --set alpha", "no value"},
-             {2, "temporal in out --set kernel=jinc2", "separable"},
-             {2, "temporal in out --conventions maya", "blender"},
-             {2, "temporal in out --motion-units inches", "pixels"},
-             {2, "temporal in out --size 8x8", "--size"},
-             {2, "temporal mover out", "--size"},
-             {2, "temporal in out --report no/where", "--report"},
-             {1, "temporal none out", "not a folder"},
-             {1, "temporal empty out", "no EXR files"},
-             {1, "temporal in out --meta broken.json", "not JSON"},
-             {1, "temporal in out --meta other.json", "\"in\""},
-             {1, "temporal in out --meta far.json", "line 1: \"jitter\""},
-             {1, "temporal in out --color Beauty", "Beauty"},
-             {1, "temporal in out --reference empty", "no reference"},
-         })
-        EXPECT_TRUE(fails(c.code, shell(c.line), c.word)) << c.line;
-    std::filesystem::remove(shell / "in/f_101.exr");
-    EXPECT_TRUE(fails(1, shell("temporal in out"), "frame 101 is missing"));
-    ASSERT_TRUE(succeeds(shell("pattern edge in/f_101.exr --size 33x24 --spp 1")));
-    EXPECT_TRUE(fails(1, shell("temporal in out"), "one size"));
-}
+    TEST(TemporalVerb, EmitsItsPassAsAShader) {
+        const Shell shell(BANDLIMIT_PROGRAM);
+        const Outcome balanced = shell("temporal --emit wgsl");
+        EXPECT_TRUE(succeeds(balanced));
+        for (const char* part : {"fn temporal_step(", "fn temporal_show(", "Made by: bandlimit temporal --emit wgsl"})
+            EXPECT_NE(balanced.out.find(part), std::string::npos) << part;
+        const Outcome plain = shell("temporal --preset fast --set rectification=none --emit hlsl");
+        EXPECT_TRUE(succeeds(plain));
+        EXPECT_EQ(plain.out.find("temporal_rectified"), std::string::npos);
+        EXPECT_TRUE(fails(2, shell("temporal glyphs out --emit wgsl"), "INPUT"));
+        EXPECT_TRUE(fails(2, shell("temporal --emit wgsl --json"), "--json"));
+        EXPECT_TRUE(fails(2, shell("temporal --emit metal"), "msl"));
+        EXPECT_TRUE(fails(2, shell("temporal --preset per-frame --emit glsl"), "per-frame"));
+        EXPECT_TRUE(fails(2, shell("temporal"), "INPUT"));
+    }
+
+    TEST(TemporalVerb, RefusesWhatDoesNotFit) {
+        const Shell shell(BANDLIMIT_PROGRAM);
+        add_sequence(shell, "edge", "in", 3);
+        struct Case {
+            int code;
+            std::string line, word;
+        };
+        std::ofstream(shell / "broken.json") << "{\"sequences\": ";
+        std::ofstream(shell / "other.json") << "{\"sequences\": {\"elsewhere\": {}}}";
+        std::ofstream(shell / "far.json") << "{\"sequences\": {\"in\": {\"jitter\": [[40, 0]]}}}";
+        std::filesystem::create_directory(shell / "empty");
+        for (const Case& c : {
+                 Case{2, "temporal in", "OUTDIR"},
+                 {2, "temporal in out --scale 5", "--scale: "},
+                 {2, "temporal in out --scale nan", "--scale"},
+                 {2, "temporal in out --preset ultra", "balanced"},
+                 {2, "temporal in out --set speed=1", "still-frames"},
+                 {2, "temporal in out --set alpha=2", "alpha = 2"},
+                 {2, "temporal in out --set alpha", "no value"},
+                 {2, "temporal in out --set kernel=jinc2", "separable"},
+                 {2, "temporal in out --conventions maya", "blender"},
+                 {2, "temporal in out --motion-units inches", "pixels"},
+                 {2, "temporal in out --size 8x8", "--size"},
+                 {2, "temporal mover out", "--size"},
+                 {2, "temporal in out --report no/where", "--report"},
+                 {1, "temporal none out", "not a folder"},
+                 {1, "temporal empty out", "no EXR files"},
+                 {1, "temporal in out --meta broken.json", "not JSON"},
+                 {1, "temporal in out --meta other.json", "\"in\""},
+                 {1, "temporal in out --meta far.json", "line 1: \"jitter\""},
+                 {1, "temporal in out --color Beauty", "Beauty"},
+                 {1, "temporal in out --reference empty", "no reference"},
+             })
+            EXPECT_TRUE(fails(c.code, shell(c.line), c.word)) << c.line;
+        std::filesystem::remove(shell / "in/f_101.exr");
+        EXPECT_TRUE(fails(1, shell("temporal in out"), "frame 101 is missing"));
+        ASSERT_TRUE(succeeds(shell("pattern edge in/f_101.exr --size 33x24 --spp 1")));
+        EXPECT_TRUE(fails(1, shell("temporal in out"), "one size"));
+    }
 
 }  // namespace
 }  // namespace bandlimit

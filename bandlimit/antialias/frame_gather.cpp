@@ -51,6 +51,13 @@ GatherAxis gather_axis(const Kernel& kernel, bool is_input_sized, int in, int ou
 
 }  // namespace
 
+WeightLimits weight_limits(const Kernel& kernel) {
+    constexpr int steps = 256;
+    for (int i = 0; i < steps; ++i)
+        if (kernel.value((i + 0.5) / steps * kernel.radius) < 0) return {0.25f, 0.5f};
+    return {0.02f, 0.3f};
+}
+
 FrameGather frame_gather(const Kernel& kernel, bool is_input_sized, int in_width, int in_height, int out_width,
                          int out_height, Point jitter) {
     if (is_radial(kernel) || kernel.form == Kernel::Form::nearest)

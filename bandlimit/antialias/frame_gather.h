@@ -17,6 +17,15 @@ struct FrameGather {
     double mean_weight = 1;             ///< of x[i] y[j], over all phases
 };
 
+/// How much weight has to be gathered ...
+struct WeightLimits {
+    float least;   ///< ... to be divided by
+    float enough;  ///< ... to be shown alone
+};
+
+/// A kernel with negative weights may gather samples that nearly cancel: nothing is divided by that.
+WeightLimits weight_limits(const Kernel& kernel);
+
 /// throws   Error for a kernel that is not separable, and jitter that is not finite or beyond a pixel
 FrameGather frame_gather(const Kernel& kernel, bool is_input_sized, int in_width, int in_height, int out_width,
                          int out_height, Point jitter);

@@ -22,17 +22,6 @@ constexpr std::array<std::string_view, 6> preset_names{"fast",      "balanced", 
 
 bool is_share(double v) { return v >= 0 && v <= 1; }
 
-void check_options(const TemporalOptions& o) {
-    if (!(o.alpha > 0 && o.alpha <= 1)) fail("accumulate: alpha = ", o.alpha, "; pass more than 0, up to 1");
-    if (!(o.still_frames >= 1)) fail("accumulate: still_frames = ", o.still_frames, "; pass 1 or more");
-    if (!(o.forget_by_motion >= 0)) fail("accumulate: forget_by_motion = ", o.forget_by_motion, "; pass 0 or more");
-    if (!(o.depth_tolerance > 0)) fail("accumulate: depth_tolerance = ", o.depth_tolerance, "; pass more than 0");
-    if (!is_share(o.disocclusion_keep) || !is_share(o.rectify_share) || !is_share(o.sharpening))
-        fail("accumulate: disocclusion_keep, rectify_share and sharpening are shares; pass 0 to 1");
-    if (!(o.box_size >= 0 && o.doubt >= 0))
-        fail("accumulate: box_size and doubt may not be below 0; pass e.g. 1.25 and 0.02");
-}
-
 template <class T>
 void check_buffer(const char* name, const View<T>& view, int width, int height, int channels) {
     if (view.width == 0) return;
@@ -56,6 +45,17 @@ void check_frame(const TemporalFrame& frame, int width, int height) {
 }
 
 }  // namespace
+
+void check_options(const TemporalOptions& o) {
+    if (!(o.alpha > 0 && o.alpha <= 1)) fail("accumulate: alpha = ", o.alpha, "; pass more than 0, up to 1");
+    if (!(o.still_frames >= 1)) fail("accumulate: still_frames = ", o.still_frames, "; pass 1 or more");
+    if (!(o.forget_by_motion >= 0)) fail("accumulate: forget_by_motion = ", o.forget_by_motion, "; pass 0 or more");
+    if (!(o.depth_tolerance > 0)) fail("accumulate: depth_tolerance = ", o.depth_tolerance, "; pass more than 0");
+    if (!is_share(o.disocclusion_keep) || !is_share(o.rectify_share) || !is_share(o.sharpening))
+        fail("accumulate: disocclusion_keep, rectify_share and sharpening are shares; pass 0 to 1");
+    if (!(o.box_size >= 0 && o.doubt >= 0))
+        fail("accumulate: box_size and doubt may not be below 0; pass e.g. 1.25 and 0.02");
+}
 
 std::string_view name_of(HistoryKernel kernel) {
     constexpr std::array<std::string_view, 5> names{"bilinear", "catmull-rom", "catmull-rom5", "lanczos2", "bspline"};
@@ -148,11 +148,8 @@ public:
                 .surface_exposure = history.exposure_,
                 .out = out,
                 .debug = debug} {
-        // A kernel with negative weights may gather samples that nearly cancel: nothing is divided by that.
-        const bool may_cancel = *std::min_element(gather_.x.begin(), gather_.x.end()) < 0 ||
-                                options.kernel.value(options.kernel.radius * 0.75) < 0;
-        pass_.least_weight = may_cancel ? 0.25f : 0.02f;
-        pass_.enough_weight = may_cancel ? 0.5f : 0.3f;
+        const WeightLimits limits = weight_limits(options.kernel);
+        pass_.least_weight = limits.least, pass_.enough_weight = limits.enough;
     }
 
     void run() {

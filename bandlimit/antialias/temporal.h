@@ -96,6 +96,9 @@ struct TemporalOptions {
     double sharpening = 0;  ///< 0 to 1, of the result only: history is not sharpened
 };
 
+/// Throws Error for a number out of range, as accumulate() does.
+void check_options(const TemporalOptions& options);
+
 /// "fast", "balanced", "sharp", "reference" (supersampling over time: remembers all, rejects nothing), and the plain
 /// rules "per-frame" and "input-sized", which are there to compare with. Throws Error for another name, listing them.
 TemporalOptions temporal_preset(std::string_view name);
@@ -122,6 +125,7 @@ public:
 
 private:
     friend class TemporalStep;
+    friend class TemporalState;  ///< temporal_state.h: what of this is stored
 
     struct State {
         Image<float> sums;

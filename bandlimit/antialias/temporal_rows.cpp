@@ -16,11 +16,7 @@
 #define BANDLIMIT_ANTIALIAS_TEMPORAL_ROWS_ONCE
 namespace bandlimit {
 
-constexpr float far_away = 1e10f;           // the depth of what has none
-constexpr float velocity_tolerance = 0.5f;  // input pixels per frame
-constexpr float still_motion = 0.01f;       // the same; less is no motion
-constexpr float full_doubt_speed = 0.1f;    // output pixels per frame; what is slower is doubted less
-constexpr float least_extent = 0.02f;       // of a box, when something is measured by it
+constexpr float far_away = 1e10f;  // the depth of what has none
 
 /// Calls body(u, v) for up to 3 x 3 samples about (x, y) that lie inside.
 template <class Body>

@@ -10,6 +10,11 @@
 
 namespace bandlimit {
 
+constexpr float velocity_tolerance = 0.5f;  ///< input pixels per frame
+constexpr float still_motion = 0.01f;       ///< the same; less is no motion
+constexpr float full_doubt_speed = 0.1f;    ///< output pixels per frame; what is slower is doubted less
+constexpr float least_extent = 0.02f;       ///< of a box, when something is measured by it
+
 /// A frame on its way into the history: all of it, for every row. Rows of four floats a pixel are [4 x width] floats.
 struct TemporalPass {
     const TemporalFrame& frame;
@@ -26,8 +31,8 @@ struct TemporalPass {
     View<float> out = {};
     TemporalDebug debug = {};
 
-    float least_weight = 0.02f;  ///< what may be divided by
-    float enough_weight = 0.3f;  ///< what is shown alone
+    float least_weight = 0;   ///< what may be divided by
+    float enough_weight = 0;  ///< what is shown alone
 };
 
 /// Rows of the frame, the first of which is `first`, made by finite_row().

@@ -30,8 +30,16 @@ std::int64_t modified_at(const fs::path& path, std::error_code& error) {
     return fs::last_write_time(path, error).time_since_epoch().count();
 }
 
-/// Names of files are bytes, and JSON is UTF-8: what is not ASCII is written as in an address, %C3%A4.
-std::string to_text(std::string_view name) {
+MadeFile made_of(const json& entry) {
+    std::map<std::string, std::string> inputs;
+    for (const auto& [input, hash] : entry.at("inputs").items()) inputs[name_of_text(input)] = hash.get<std::string>();
+    return {std::move(inputs), entry.at("options").get<std::string>(), entry.at("size").get<std::uint64_t>(),
+            entry.at("modified").get<std::int64_t>()};
+}
+
+}  // namespace
+
+std::string text_of_name(std::string_view name) {
     std::string text;
     for (const char c : name) {
         const auto byte = static_cast<unsigned char>(c);
@@ -41,7 +49,7 @@ std::string to_text(std::string_view name) {
     return text;
 }
 
-std::string from_text(std::string_view text) {
+std::string name_of_text(std::string_view text) {
     std::string name;
     for (std::size_t i = 0; i < text.size(); ++i) {
         unsigned byte = 0;
@@ -53,15 +61,6 @@ std::string from_text(std::string_view text) {
     }
     return name;
 }
-
-MadeFile made_of(const json& entry) {
-    std::map<std::string, std::string> inputs;
-    for (const auto& [input, hash] : entry.at("inputs").items()) inputs[from_text(input)] = hash.get<std::string>();
-    return {std::move(inputs), entry.at("options").get<std::string>(), entry.at("size").get<std::uint64_t>(),
-            entry.at("modified").get<std::int64_t>()};
-}
-
-}  // namespace
 
 std::string hash_of_file(const std::string& path) {
     const File file = open_regular(path);
@@ -82,7 +81,7 @@ Manifest::Manifest(const std::string& directory) : directory_(directory) {
     try {
         const json root = json::parse(read_text(path.string(), most_bytes, "another OUTDIR, or remove it"));
         if (root.at("version") != version) return;
-        for (const auto& [output, entry] : root.at("outputs").items()) made_[from_text(output)] = made_of(entry);
+        for (const auto& [output, entry] : root.at("outputs").items()) made_[name_of_text(output)] = made_of(entry);
     } catch (const json::exception&) {
         made_.clear();
     }
@@ -111,8 +110,8 @@ void Manifest::save() const {
     json outputs = json::object();
     for (const auto& [output, made] : made_) {
         json inputs = json::object();
-        for (const auto& [input, hash] : made.inputs) inputs[to_text(input)] = hash;
-        outputs[to_text(output)] = {
+        for (const auto& [input, hash] : made.inputs) inputs[text_of_name(input)] = hash;
+        outputs[text_of_name(output)] = {
             {"inputs", std::move(inputs)}, {"options", made.options}, {"size", made.size}, {"modified", made.modified}};
     }
     const json root{{"version", version}, {"outputs", std::move(outputs)}};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace bandlimit::job {
 
@@ -14,6 +15,10 @@ struct MadeFile {
     std::uint64_t size = 0;                     ///< bytes
     std::int64_t modified = 0;                  ///< nanoseconds, as the file system counts
 };
+
+/// Names of files are bytes, and JSON is UTF-8: what is not ASCII is written as in an address, %C3%A4. And back.
+std::string text_of_name(std::string_view name);
+std::string name_of_text(std::string_view text);
 
 /// The 128-bit XXH3 hash of a file's bytes, in hexadecimal.
 /// throws  std::runtime_error with the path

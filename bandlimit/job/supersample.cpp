@@ -193,16 +193,6 @@ MixedError mixed_error(MixedMode mode, const Kernel& kernel, const Parallel& par
     return {mode, kernel.name, std::sqrt(sum / count)};
 }
 
-std::vector<MixedError> mixed_errors(const Kernel& kernel, const Parallel& parallel) {
-    std::vector<Kernel> kernels{tent(), catmull_rom(), lanczos(3)};
-    const auto is_there = [&](const Kernel& k) { return k.name == kernel.name; };
-    if (std::none_of(kernels.begin(), kernels.end(), is_there)) kernels.push_back(kernel);
-    std::vector<MixedError> errors;
-    for (const MixedMode mode : {MixedMode::uniform, MixedMode::interlaced, MixedMode::checkerboard})
-        for (const Kernel& k : kernels) errors.push_back(mixed_error(mode, k, parallel));
-    return errors;
-}
-
 /// Black beside stripes of a frequency that pixels do not hold, along a slanted line.
 ShadedSurfaces striped_outline() {
     const Signal wave = stripes({.period = 1.3, .angle = 20, .sinusoid = true});
@@ -212,18 +202,6 @@ ShadedSurfaces striped_outline() {
                 const double half = footprint / 2;
                 return half == 0 ? wave.value(x, y) : wave.mean({x - half, y - half, x + half, y + half});
             }};
-}
-
-std::vector<ShadingError> shading_errors(const SamplePattern& pattern, const Parallel& parallel) {
-    constexpr int size = 64;
-    const ShadedSurfaces scene = striped_outline();
-    const Image<float> truth = bandlimit::supersample(scene, size, size, regular_pattern(1024), 0, parallel);
-    const auto rmse = [&](const Image<float>& image) { return std::sqrt(mse(image.view(), truth.view())); };
-    const double share = 1 / std::sqrt(pattern.count());
-    return {{"multisample", false, rmse(multisample(scene, size, size, pattern, 0, parallel))},
-            {"multisample", true, rmse(multisample(scene, size, size, pattern, 1, parallel))},
-            {"supersample", false, rmse(bandlimit::supersample(scene, size, size, pattern, 0, parallel))},
-            {"supersample", true, rmse(bandlimit::supersample(scene, size, size, pattern, share, parallel))}};
 }
 
 }  // namespace
@@ -275,6 +253,28 @@ double alias_energy(const SupersampleOptions& options, const Parallel& parallel)
             ++count;
         }
     return sum / count * 8;
+}
+
+std::vector<MixedError> mixed_errors(const Kernel& kernel, const Parallel& parallel) {
+    std::vector<Kernel> kernels{tent(), catmull_rom(), lanczos(3)};
+    const auto is_there = [&](const Kernel& k) { return k.name == kernel.name; };
+    if (std::none_of(kernels.begin(), kernels.end(), is_there)) kernels.push_back(kernel);
+    std::vector<MixedError> errors;
+    for (const MixedMode mode : {MixedMode::uniform, MixedMode::interlaced, MixedMode::checkerboard})
+        for (const Kernel& k : kernels) errors.push_back(mixed_error(mode, k, parallel));
+    return errors;
+}
+
+std::vector<ShadingError> shading_errors(const SamplePattern& pattern, const Parallel& parallel) {
+    constexpr int size = 64;
+    const ShadedSurfaces scene = striped_outline();
+    const Image<float> truth = bandlimit::supersample(scene, size, size, regular_pattern(1024), 0, parallel);
+    const auto rmse = [&](const Image<float>& image) { return std::sqrt(mse(image.view(), truth.view())); };
+    const double share = 1 / std::sqrt(pattern.count());
+    return {{"multisample", false, rmse(multisample(scene, size, size, pattern, 0, parallel))},
+            {"multisample", true, rmse(multisample(scene, size, size, pattern, 1, parallel))},
+            {"supersample", false, rmse(bandlimit::supersample(scene, size, size, pattern, 0, parallel))},
+            {"supersample", true, rmse(bandlimit::supersample(scene, size, size, pattern, share, parallel))}};
 }
 
 ResolveReport report_on(const SupersampleJob& job, const Context& context) {

@@ -77,6 +77,12 @@ struct ResolveReport {
 /// 1 for one sample and no filter.
 double alias_energy(const SupersampleOptions& options, const Parallel& parallel = {});
 
+/// Each way of leaving out half of the samples, with tent, catmull-rom and lanczos3, and with `kernel` if it is another.
+std::vector<MixedError> mixed_errors(const Kernel& kernel = tent(), const Parallel& parallel = {});
+
+/// Multisampling and supersampling by a pattern, each as it is and filtered first.
+std::vector<ShadingError> shading_errors(const SamplePattern& pattern, const Parallel& parallel = {});
+
 /// All of the above for a job's pattern, kernel and scene. A few seconds for slow scenes.
 /// throws   as supersample()
 ResolveReport report_on(const SupersampleJob& job, const Context& context = {});

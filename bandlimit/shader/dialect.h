@@ -38,7 +38,8 @@ std::string_view extension_of(Dialect dialect);
 ///                    thread_position, texture_size(NAME, t), image_size(NAME, image), barrier(), store(image, at,
 ///                    value)
 ///
-/// Functions that all languages have (floor, dot, min, max, clamp, sqrt, pow) keep their names. There are no swizzles.
+/// Functions that all languages have (floor, dot, min, max, clamp, abs, sqrt, exp, log, pow) keep their names, as do
+/// if, else and return. There are no swizzles.
 ///
 /// throws   Error for a word without its parentheses, or too few arguments: the neutral form is ours
 std::string translate(std::string_view source, Dialect dialect);

@@ -210,12 +210,6 @@ std::string joined(std::initializer_list<std::string_view> parts) {
     return out;
 }
 
-std::string with(std::string text, std::string_view word, std::string_view value) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + value.size()))
-        text.replace(at, word.size(), value);
-    return text;
-}
-
 /// sin(pi x / 2) / x as a polynomial of x^2 = `variable`, in Horner's form: the Taylor series, whose sixth term is
 /// below 4e-6 and seventh below 6e-8 for x <= 1.
 std::string sine_over(const std::string& variable) {
@@ -247,26 +241,6 @@ std::string jinc2_source() {
     std::string body = with(std::string(jinc2), "SCALE", number(jinc_intervals / squared));
     body = with(body, "LAST", number(jinc_intervals));
     return joined({table, ");\n\n", function_2d, body});
-}
-
-/// A polynomial of x - begin in Horner's form.
-std::string polynomial(const KernelPiece& piece) {
-    const std::string variable = piece.begin == 0 ? "x" : message("(x - ", number(piece.begin), ")");
-    const std::vector<double>& c = piece.coefficients;
-    std::string text = number(c.back());
-    for (std::size_t k = c.size() - 1; k-- > 0;) text = message(number(c[k]), " + ", variable, " * (", text, ")");
-    return text;
-}
-
-/// NAME_weight(distance): the piece under the distance.
-std::string weight_of(const KernelPieces& pieces) {
-    std::string value = "0.0";
-    for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece)
-        value =
-            message("choose(x < ", number(piece->end), ",\n        ", polynomial(*piece), ",\n        ", value, ")");
-    return "function(float, NAME_weight, in(float, distance)) {\n    let(float, x) = max(distance, -distance);\n"
-           "    return " +
-           value + ";\n}\n\n";
 }
 
 std::string source_of(std::string_view name) {
@@ -333,7 +307,7 @@ std::string pieces_shader(const KernelPieces& kernel, const ShaderInfo& info, Di
                         message(reads, " reads at centres of texels, and their weights, of ", kernel.size(),
                                 " polynomials along each axis"),
                         Header::Reads::samples};
-    std::string source = joined({weight_of(kernel), function_2d, pieces});
+    std::string source = joined({weight_function(kernel), function_2d, pieces});
     source = with(with(source, "FROM", message(1 - reach)), "TO", message(reach + 1));
     return shader_text(info, header, with(source, "NAME", info.name), dialect);
 }

@@ -89,12 +89,13 @@ std::string evaluation(Dialect dialect, const std::vector<std::string>& calls) {
     const bool metal = dialect == Dialect::msl;
     std::string text = metal ? "using Texture = texture2d<float>;\n" : "using Texture = Source;\n";
     text +=
-        "extern \"C\" void evaluate(int call, const void* s, const void* o, float u, float v, float tx, float ty, "
-        "float* out) "
-        "{\n    const Texture& source = *static_cast<const Texture*>(s);\n"
-        "    const Texture& other = *static_cast<const Texture*>(o);\n    using namespace bandlimit_shader;\n"
-        "    const float2 uv(u, v), texel(tx, ty);\n    float4 value;\n";
-    if (metal) text += "    const sampler source_sampler;\n";
+        "extern \"C\" void evaluate(int call, const void* const* textures, float u, float v, float tx, float ty, "
+        "float* out) {\n"
+        "    const auto texture = [&](int i) -> const Texture& { return *static_cast<const Texture*>(textures[i]); };\n"
+        "    [[maybe_unused]] const Texture& source = texture(0);\n"
+        "    [[maybe_unused]] const Texture& other = texture(1);\n    using namespace bandlimit_shader;\n"
+        "    [[maybe_unused]] const float2 uv(u, v), texel(tx, ty);\n    float4 value;\n";
+    if (metal) text += "    [[maybe_unused]] const sampler source_sampler;\n";
     for (std::size_t i = 0; i < calls.size(); ++i)
         text += message("    if (call == ", i, ") value = ", calls[i], ";\n");
     return text + "    out[0] = value.x, out[1] = value.y, out[2] = value.z, out[3] = value.w;\n}\n";
@@ -117,12 +118,21 @@ Library::Library(Dialect dialect, const std::string& functions, const std::vecto
     evaluate_ = reinterpret_cast<decltype(evaluate_)>(dlsym(handle, "evaluate"));
 }
 
+Colour Library::operator()(int call, const std::vector<const Picture*>& textures, Edge edge, int bits, float u,
+                           float v) const {
+    std::vector<Source> sources;
+    for (const Picture* picture : textures) sources.push_back({picture, edge, bits, sample, load});
+    std::vector<const void*> pointers;
+    for (const Source& source : sources) pointers.push_back(&source);
+    float out[4];
+    evaluate_(call, pointers.data(), u, v, 1 / static_cast<float>(textures[0]->width),
+              1 / static_cast<float>(textures[0]->height), out);
+    return {out[0], out[1], out[2], out[3]};
+}
+
 Colour Library::operator()(int call, const Picture& source, const Picture& other, Edge edge, int bits, float u,
                            float v) const {
-    const Source s{&source, edge, bits, sample, load}, o{&other, edge, bits, sample, load};
-    float out[4];
-    evaluate_(call, &s, &o, u, v, 1 / static_cast<float>(source.width), 1 / static_cast<float>(source.height), out);
-    return {out[0], out[1], out[2], out[3]};
+    return (*this)(call, {&source, &other}, edge, bits, u, v);
 }
 
 }  // namespace bandlimit::test

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "bandlimit/color/half.h"
@@ -50,6 +51,13 @@ inline std::vector<Half> halves_of(const Picture& picture) {
     std::vector<Half> out;
     for (const float v : picture.texels) out.push_back(to_half(v));
     return out;
+}
+
+/// The same as bytes, or its floats as they are.
+inline std::string bytes_of(const Picture& picture, bool as_floats) {
+    if (as_floats) return {reinterpret_cast<const char*>(picture.texels.data()), picture.texels.size() * sizeof(float)};
+    const std::vector<Half> halves = halves_of(picture);
+    return {reinterpret_cast<const char*>(halves.data()), halves.size() * sizeof(Half)};
 }
 
 inline double largest_step(const Colour& a, const Colour& b) {

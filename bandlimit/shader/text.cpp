@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <string_view>
+#include <vector>
 
 #include "bandlimit/core/error.h"
 
@@ -32,14 +33,8 @@ void comment(const std::string& text, std::string& out) {
     out += rest.empty() ? "//\n" : "// " + rest + "\n";
 }
 
-std::string named(std::string text, const std::string& name) {
-    for (std::size_t at = text.find("NAME"); at != std::string::npos; at = text.find("NAME", at + name.size()))
-        text.replace(at, 4, name);
-    return text;
-}
-
 void describe_parameters(Header::Reads reads, Dialect dialect, std::string& out) {
-    if (reads == Header::Reads::colours) return;
+    if (reads == Header::Reads::colours || reads == Header::Reads::own) return;
     const bool apart = dialect != Dialect::glsl && dialect != Dialect::cpp;
     comment("", out);
     if (reads == Header::Reads::compute) {
@@ -80,6 +75,28 @@ void check_shader_name(const std::string& name) {
              "\" is not a name for a function; pass small letters, digits and single underscores, e.g. blur_25");
 }
 
+std::string with(std::string text, std::string_view word, std::string_view value) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + value.size()))
+        text.replace(at, word.size(), value);
+    return text;
+}
+
+std::string polynomial(const KernelPiece& piece) {
+    const std::string variable = piece.begin == 0 ? "x" : message("(x - ", number(piece.begin), ")");
+    const std::vector<double>& c = piece.coefficients;
+    std::string text = number(c.back());
+    for (std::size_t k = c.size() - 1; k-- > 0;) text = message(number(c[k]), " + ", variable, " * (", text, ")");
+    return text;
+}
+
+std::string weight_function(const KernelPieces& pieces) {
+    std::string text =
+        "function(float, NAME_weight, in(float, distance)) {\n    let(float, x) = max(distance, -distance);\n";
+    for (const KernelPiece& piece : pieces)
+        text += message("    if (x < ", number(piece.end), ") {\n        return ", polynomial(piece), ";\n    }\n");
+    return text + "    return 0.0;\n}\n\n";
+}
+
 std::string number(double value, int digits) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
@@ -91,7 +108,7 @@ std::string number(double value, int digits) {
 std::string shader_text(const ShaderInfo& info, const Header& header, const std::string& source, Dialect dialect) {
     check_shader_name(info.name);
     std::string out;
-    comment(info.name + ": " + named(header.what, info.name), out);
+    comment(info.name + ": " + with(header.what, "NAME", info.name), out);
     for (const std::string& line : info.notes) comment(line, out);
     comment("Cost: " + header.cost + ".", out);
     if (!info.command.empty()) comment("Made by: " + info.command, out);

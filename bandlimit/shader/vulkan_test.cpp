@@ -212,10 +212,11 @@ private:
     }
 
     Texture upload(const Picture& picture) {
-        const std::vector<Half> halves = halves_of(picture);
-        const Buffer staging = buffer(halves.size() * 2, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-        std::memcpy(staging.data, halves.data(), halves.size() * 2);
-        const Texture t = texture(picture.width, picture.height, VK_FORMAT_R16G16B16A16_SFLOAT,
+        const std::string bytes = bytes_of(picture, d_.loads_floats);
+        const Buffer staging = buffer(bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+        std::memcpy(staging.data, bytes.data(), bytes.size());
+        const Texture t = texture(picture.width, picture.height,
+                                  d_.loads_floats ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT,
                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         barrier(t.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
         const VkBufferImageCopy all = whole(picture.width, picture.height);

@@ -18,6 +18,7 @@ struct Dispatch {
     int width = 0, height = 0;       ///< of the result
     int groups_x = 0, groups_y = 0;  ///< workgroups
     bool half_result = false;        ///< the result is rgba16f, else rgba32f
+    bool loads_floats = false;       ///< textures are rgba32f, and read without the sampler
 };
 
 /// A device and what belongs to it. All failures of Vulkan throw std::runtime_error.

@@ -17,11 +17,6 @@ const char* address_mode(Edge edge) {
 }
 
 template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-template <class T>
 std::vector<T> values_of(const std::string& bytes) {
     std::vector<T> out(bytes.size() / sizeof(T));
     std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
@@ -42,16 +37,18 @@ std::vector<std::vector<float>> run_by_wgpu(const std::vector<WgpuJob>& jobs) {
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const Dispatch& d = jobs[i].dispatch;
         write_text(folder / message(i, ".wgsl"), jobs[i].shader);
-        std::string textures;
+        std::string textures, sizes;
         for (std::size_t t = 0; t < d.textures.size(); ++t) {
-            const std::string name = message(i, "-", t);
-            write_text(folder / name, bytes_of(halves_of(*d.textures[t])));
+            const bool is_fed_back = static_cast<int>(t) == jobs[i].feedback;
+            const std::string name = is_fed_back ? message(i - 1, ".out") : message(i, "-", t);
+            if (!is_fed_back) write_text(folder / name, bytes_of(*d.textures[t], d.loads_floats));
             textures += message(t == 0 ? "" : ", ", '"', name, '"');
+            sizes += message(t == 0 ? "[" : ", [", d.textures[t]->width, ", ", d.textures[t]->height, "]");
         }
         list += message(i == 0 ? "" : ",\n", R"({"shader": ")", i, R"(.wgsl", "entry": ")", d.entry,
-                        R"(", "textures": [)", textures, R"(], "texture_size": [)", d.textures[0]->width, ", ",
-                        d.textures[0]->height, R"(], "address": ")", address_mode(d.edge), R"(", "size": [)", d.width,
-                        ", ", d.height, R"(], "groups": [)", d.groups_x, ", ", d.groups_y, R"(], "format": ")",
+                        R"(", "textures": [)", textures, R"(], "texture_sizes": [)", sizes, R"(], "floats": )",
+                        d.loads_floats ? "true" : "false", R"(, "address": ")", address_mode(d.edge), R"(", "size": [)",
+                        d.width, ", ", d.height, R"(], "groups": [)", d.groups_x, ", ", d.groups_y, R"(], "format": ")",
                         d.half_result ? "rgba16float" : "rgba32float", R"(", "output": ")", i, R"(.out"})");
     }
     write_text(folder / "jobs.json", "[" + list + "]\n");

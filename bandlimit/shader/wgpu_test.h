@@ -11,6 +11,7 @@ namespace bandlimit::test {
 struct WgpuJob {
     std::string shader;
     Dispatch dispatch;
+    int feedback = -1;  ///< the texture that is the result of the job before, if 0 or more; it has its size
 };
 
 /// What is missing, with how to get it; empty if wgpu is there.

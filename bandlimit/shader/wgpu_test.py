@@ -1,6 +1,7 @@
 """Runs compute shaders in WGSL by wgpu, whose compiler is naga: wgpu_test.py FOLDER
 
-FOLDER/jobs.json lists jobs, each with: shader, entry, textures (files of RGBA halves), texture_size, address, size of the
+FOLDER/jobs.json lists jobs, each with: shader, entry, textures (files of RGBA
+halves, or floats that are read without a sampler), texture_sizes, floats, address, size of the
 result, groups, and output. A result is written as RGBA floats.
 """
 import json
@@ -19,16 +20,18 @@ def run(device, folder, job, modules):
     if source not in modules:
         modules[source] = device.create_shader_module(code=source)
     entries = []
-    for index, name in enumerate(job["textures"]):
-        width, height = job["texture_size"]
+    floats = job["floats"]
+    for index, (name, (width, height)) in enumerate(zip(job["textures"], job["texture_sizes"])):
         picture = texture(device, (width, height), wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST,
-                          "rgba16float")
+                          "rgba32float" if floats else "rgba16float")
         device.queue.write_texture({"texture": picture}, (folder / name).read_bytes(),
-                                   {"bytes_per_row": width * 8, "rows_per_image": height}, (width, height, 1))
+                                   {"bytes_per_row": width * (16 if floats else 8), "rows_per_image": height},
+                                   (width, height, 1))
         entries.append({"binding": index + 2 if index else 0, "resource": picture.create_view()})
     mode = job["address"]
-    entries.append({"binding": 1, "resource": device.create_sampler(
-        mag_filter="linear", min_filter="linear", address_mode_u=mode, address_mode_v=mode)})
+    if not floats:
+        entries.append({"binding": 1, "resource": device.create_sampler(
+            mag_filter="linear", min_filter="linear", address_mode_u=mode, address_mode_v=mode)})
     width, height = job["size"]
     result = texture(device, (width, height), wgpu.TextureUsage.STORAGE_BINDING | wgpu.TextureUsage.COPY_SRC,
                      job["format"])

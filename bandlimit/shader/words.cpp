@@ -170,7 +170,8 @@ constexpr std::string_view cpp_before = R"(#ifndef BANDLIMIT_SHADER_TYPES
 #include <cmath>
 namespace bandlimit_shader {
 struct float2 {
-    float x, y;
+    float x = 0, y = 0;
+    constexpr float2() = default;
     constexpr float2(float x_, float y_) : x(x_), y(y_) {}
     template <class Integers>
     explicit constexpr float2(Integers v) : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)) {}
@@ -183,6 +184,7 @@ struct float4 {
     float x = 0, y = 0, z = 0, w = 0;
     constexpr float4() = default;
     constexpr float4(float x_, float y_, float z_, float w_) : x(x_), y(y_), z(z_), w(w_) {}
+    constexpr float operator[](int i) const { return i == 0 ? x : i == 1 ? y : i == 2 ? z : w; }
 };
 struct int2 {
     int x, y;
@@ -203,6 +205,8 @@ inline float2 operator-(float a, float2 b) { return {a - b.x, a - b.y}; }
 inline float2 operator*(float a, float2 b) { return {a * b.x, a * b.y}; }
 inline float2 operator/(float a, float2 b) { return {a / b.x, a / b.y}; }
 inline float4 operator+(float4 a, float4 b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
+inline float4 operator-(float4 a, float4 b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
+inline float4 operator*(float4 a, float4 b) { return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w}; }
 inline float4 operator*(float a, float4 b) { return {a * b.x, a * b.y, a * b.z, a * b.w}; }
 inline float4 operator/(float4 a, float b) { return {a.x / b, a.y / b, a.z / b, a.w / b}; }
 inline float4& operator+=(float4& a, float4 b) { return a = a + b; }
@@ -214,6 +218,18 @@ inline float dot(float2 a, float2 b) { return a.x * b.x + a.y * b.y; }
 inline float pow(float a, float b) { return std::pow(a, b); }
 inline float min(float a, float b) { return a < b ? a : b; }
 inline float max(float a, float b) { return a < b ? b : a; }
+inline float exp(float v) { return std::exp(v); }
+inline float log(float v) { return std::log(v); }
+inline float abs(float v) { return std::abs(v); }
+inline float sqrt(float v) { return std::sqrt(v); }
+inline float clamp(float v, float low, float high) { return min(max(v, low), high); }
+inline float2 ceil(float2 v) { return {std::ceil(v.x), std::ceil(v.y)}; }
+inline float2 min(float2 a, float2 b) { return {min(a.x, b.x), min(a.y, b.y)}; }
+inline float2 max(float2 a, float2 b) { return {max(a.x, b.x), max(a.y, b.y)}; }
+inline float4 min(float4 a, float4 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z), min(a.w, b.w)}; }
+inline float4 max(float4 a, float4 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z), max(a.w, b.w)}; }
+inline float4 abs(float4 v) { return {abs(v.x), abs(v.y), abs(v.z), abs(v.w)}; }
+inline float4 sqrt(float4 v) { return {sqrt(v.x), sqrt(v.y), sqrt(v.z), sqrt(v.w)}; }
 inline int clamp(int v, int low, int high) { return v < low ? low : high < v ? high : v; }
 inline int2 clamp(int2 v, int2 low, int2 high) { return {clamp(v.x, low.x, high.x), clamp(v.y, low.y, high.y)}; }
 }  // namespace bandlimit_shader
