@@ -355,62 +355,63 @@ TEST(CheckConventionsVerb, FlagsAreHonoured) {
     const Image<float> two = job::read_picture(shell / "two/f_102.exr");
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 32; ++x) EXPECT_NEAR(one.view()(x, y), two.view()(x, y), 1e-4) << "vectors are rounded";
+}
 
-    TEST(TemporalVerb, EmitsItsPassAsAShader) {
-        const Shell shell(BANDLIMIT_PROGRAM);
-        const Outcome balanced = shell("temporal --emit wgsl");
-        EXPECT_TRUE(succeeds(balanced));
-        for (const char* part : {"fn temporal_step(", "fn temporal_show(", "Made by: bandlimit temporal --emit wgsl"})
-            EXPECT_NE(balanced.out.find(part), std::string::npos) << part;
-        const Outcome plain = shell("temporal --preset fast --set rectification=none --emit hlsl");
-        EXPECT_TRUE(succeeds(plain));
-        EXPECT_EQ(plain.out.find("temporal_rectified"), std::string::npos);
-        EXPECT_TRUE(fails(2, shell("temporal glyphs out --emit wgsl"), "INPUT"));
-        EXPECT_TRUE(fails(2, shell("temporal --emit wgsl --json"), "--json"));
-        EXPECT_TRUE(fails(2, shell("temporal --emit metal"), "msl"));
-        EXPECT_TRUE(fails(2, shell("temporal --preset per-frame --emit glsl"), "per-frame"));
-        EXPECT_TRUE(fails(2, shell("temporal"), "INPUT"));
-    }
+TEST(TemporalVerb, EmitsItsPassAsAShader) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    const Outcome balanced = shell("temporal --emit wgsl");
+    EXPECT_TRUE(succeeds(balanced));
+    for (const char* part : {"fn temporal_step(", "fn temporal_show(", "Made by: bandlimit temporal --emit wgsl"})
+        EXPECT_NE(balanced.out.find(part), std::string::npos) << part;
+    const Outcome plain = shell("temporal --preset fast --set rectification=none --emit hlsl");
+    EXPECT_TRUE(succeeds(plain));
+    EXPECT_EQ(plain.out.find("temporal_rectified"), std::string::npos);
+    EXPECT_TRUE(fails(2, shell("temporal glyphs out --emit wgsl"), "INPUT"));
+    EXPECT_TRUE(fails(2, shell("temporal --emit wgsl --json"), "--json"));
+    EXPECT_TRUE(fails(2, shell("temporal --emit metal"), "msl"));
+    EXPECT_TRUE(fails(2, shell("temporal --preset per-frame --emit glsl"), "per-frame"));
+    EXPECT_TRUE(fails(2, shell("temporal"), "INPUT"));
+}
 
-    TEST(TemporalVerb, RefusesWhatDoesNotFit) {
-        const Shell shell(BANDLIMIT_PROGRAM);
-        add_sequence(shell, "edge", "in", 3);
-        struct Case {
-            int code;
-            std::string line, word;
-        };
-        std::ofstream(shell / "broken.json") << "{\"sequences\": ";
-        std::ofstream(shell / "other.json") << "{\"sequences\": {\"elsewhere\": {}}}";
-        std::ofstream(shell / "far.json") << "{\"sequences\": {\"in\": {\"jitter\": [[40, 0]]}}}";
-        std::filesystem::create_directory(shell / "empty");
-        for (const Case& c : {
-                 Case{2, "temporal in", "OUTDIR"},
-                 {2, "temporal in out --scale 5", "--scale: "},
-                 {2, "temporal in out --scale nan", "--scale"},
-                 {2, "temporal in out --preset ultra", "balanced"},
-                 {2, "temporal in out --set speed=1", "still-frames"},
-                 {2, "temporal in out --set alpha=2", "alpha = 2"},
-                 {2, "temporal in out --set alpha", "no value"},
-                 {2, "temporal in out --set kernel=jinc2", "separable"},
-                 {2, "temporal in out --conventions maya", "blender"},
-                 {2, "temporal in out --motion-units inches", "pixels"},
-                 {2, "temporal in out --size 8x8", "--size"},
-                 {2, "temporal mover out", "--size"},
-                 {2, "temporal in out --report no/where", "--report"},
-                 {1, "temporal none out", "not a folder"},
-                 {1, "temporal empty out", "no EXR files"},
-                 {1, "temporal in out --meta broken.json", "not JSON"},
-                 {1, "temporal in out --meta other.json", "\"in\""},
-                 {1, "temporal in out --meta far.json", "line 1: \"jitter\""},
-                 {1, "temporal in out --color Beauty", "Beauty"},
-                 {1, "temporal in out --reference empty", "no reference"},
-             })
-            EXPECT_TRUE(fails(c.code, shell(c.line), c.word)) << c.line;
-        std::filesystem::remove(shell / "in/f_101.exr");
-        EXPECT_TRUE(fails(1, shell("temporal in out"), "frame 101 is missing"));
-        ASSERT_TRUE(succeeds(shell("pattern edge in/f_101.exr --size 33x24 --spp 1")));
-        EXPECT_TRUE(fails(1, shell("temporal in out"), "one size"));
-    }
+TEST(TemporalVerb, RefusesWhatDoesNotFit) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    add_sequence(shell, "edge", "in", 3);
+    struct Case {
+        int code;
+        std::string line, word;
+    };
+    std::ofstream(shell / "broken.json") << "{\"sequences\": ";
+    std::ofstream(shell / "other.json") << "{\"sequences\": {\"elsewhere\": {}}}";
+    std::ofstream(shell / "far.json") << "{\"sequences\": {\"in\": {\"jitter\": [[40, 0]]}}}";
+    std::filesystem::create_directory(shell / "empty");
+    for (const Case& c : {
+             Case{2, "temporal in", "OUTDIR"},
+             {2, "temporal in out --scale 5", "--scale: "},
+             {2, "temporal in out --scale nan", "--scale"},
+             {2, "temporal in out --preset ultra", "balanced"},
+             {2, "temporal in out --set speed=1", "still-frames"},
+             {2, "temporal in out --set alpha=2", "alpha = 2"},
+             {2, "temporal in out --set alpha", "no value"},
+             {2, "temporal in out --set kernel=jinc2", "separable"},
+             {2, "temporal in out --conventions maya", "blender"},
+             {2, "temporal in out --motion-units inches", "pixels"},
+             {2, "temporal in out --size 8x8", "--size"},
+             {2, "temporal mover out", "--size"},
+             {2, "temporal in out --report no/where", "--report"},
+             {1, "temporal none out", "not a folder"},
+             {1, "temporal empty out", "no EXR files"},
+             {1, "temporal in out --meta broken.json", "not JSON"},
+             {1, "temporal in out --meta other.json", "\"in\""},
+             {1, "temporal in out --meta far.json", "line 1: \"jitter\""},
+             {1, "temporal in out --color Beauty", "Beauty"},
+             {1, "temporal in out --reference empty", "no reference"},
+         })
+        EXPECT_TRUE(fails(c.code, shell(c.line), c.word)) << c.line;
+    std::filesystem::remove(shell / "in/f_101.exr");
+    EXPECT_TRUE(fails(1, shell("temporal in out"), "frame 101 is missing"));
+    ASSERT_TRUE(succeeds(shell("pattern edge in/f_101.exr --size 33x24 --spp 1")));
+    EXPECT_TRUE(fails(1, shell("temporal in out"), "one size"));
+}
 
 }  // namespace
 }  // namespace bandlimit
