@@ -29,18 +29,16 @@ constexpr double most_unsteady = 0.02;   // pixels, of motion that may as well b
 Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
 Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 
-/// v / (1 + v), so that a highlight weighs no more than anything else, 0 for what is not finite; smoothed by 1/4 1/2 1/4
-/// along x and y, since what aliases is not found again in the frame before.
+/// The lightness (R + 2 G + B) / 4 of colours v / (1 + v), so that a highlight weighs no more than anything else, and 0
+/// for what is not finite; smoothed by 1/4 1/2 1/4 along x and y, since what aliases is not found again.
 Image<float> prepared(View<const float> color) {
-    Image<float> picture(color.width, color.height, 3, Layout::interleaved);
+    const auto compressed = [](float v) { return std::isfinite(v) && v > 0 ? v / (1 + v) : 0; };
+    Image<float> picture(color.width, color.height), rows(color.width, color.height);
     for (int y = 0; y < color.height; ++y)
         for (int x = 0; x < color.width; ++x)
-            for (int c = 0; c < 3; ++c) {
-                const float v = std::max(0.0f, color(x, y, c));
-                picture.view()(x, y, c) = std::isfinite(v) ? v / (1 + v) : 0;
-            }
+            picture.view()(x, y) =
+                (compressed(color(x, y, 0)) + 2 * compressed(color(x, y, 1)) + compressed(color(x, y, 2))) / 4;
     const Taps taps{-1, {0.25, 0.5, 0.25}};
-    Image<float> rows(color.width, color.height, 3, Layout::interleaved);
     apply(make_bank(taps, color.width, Edge::clamp), picture.view(), rows.view());
     apply(make_bank(taps, color.height, Edge::clamp), transposed(View<const float>(rows.view())),
           transposed(picture.view()));
@@ -58,33 +56,28 @@ std::array<float, 4> bspline_weights(float t) {
 
 /// What `picture` shows at (x, y), where samples are at whole numbers, through a B-spline: it smooths as much between
 /// samples as at them, so that no way is at an advantage.
-std::array<float, 3> shown_at(View<const float> picture, float x, float y) {
+float shown_at(View<const float> picture, float x, float y) {
     x = std::clamp(x, 0.0f, static_cast<float>(picture.width - 1));
     y = std::clamp(y, 0.0f, static_cast<float>(picture.height - 1));
     const int left = static_cast<int>(x), top = static_cast<int>(y);
     const std::array<float, 4> weights_x = bspline_weights(x - static_cast<float>(left));
     const std::array<float, 4> weights_y = bspline_weights(y - static_cast<float>(top));
-    std::array<const float*, 4> rows{};
-    std::array<std::ptrdiff_t, 4> columns{};
-    for (int i = 0; i < 4; ++i) {
-        rows[static_cast<std::size_t>(i)] = &picture(0, std::clamp(top + i - 1, 0, picture.height - 1));
-        columns[static_cast<std::size_t>(i)] = picture.dx * std::clamp(left + i - 1, 0, picture.width - 1);
+    std::ptrdiff_t columns[4];
+    for (int i = 0; i < 4; ++i) columns[i] = picture.dx * std::clamp(left + i - 1, 0, picture.width - 1);
+    float sum = 0;
+    for (int j = 0; j < 4; ++j) {
+        const float* const row = &picture(0, std::clamp(top + j - 1, 0, picture.height - 1));
+        const float across = weights_x[0] * row[columns[0]] + weights_x[1] * row[columns[1]] +
+                             weights_x[2] * row[columns[2]] + weights_x[3] * row[columns[3]];
+        sum += weights_y[static_cast<std::size_t>(j)] * across;
     }
-    std::array<float, 3> sum{};
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t i = 0; i < 4; ++i) {
-            const float weight = weights_x[i] * weights_y[j];
-            const float* const sample = rows[j] + columns[i];
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * sample[c];
-        }
     return sum;
 }
 
 /// A pixel that is looked for in the frame before.
 struct Site {
     int x = 0, y = 0, part = 0;
-    std::array<float, 3> color{};
-    float depth = 0;
+    float shown = 0, depth = 0;
     Point stored;
 };
 
@@ -102,11 +95,11 @@ std::vector<Site> sites_of(const SequenceFrame& frame, View<const float> color) 
     std::vector<Site> sites;
     for (int y = step / 2; y < height; y += step)
         for (int x = step / 2; x < width; x += step) {
-            Site site{x, y, y * parts_y / height * parts_x + x * parts_x / width, {}, 0, {}};
+            Site site{x, y, y * parts_y / height * parts_x + x * parts_x / width, 0, 0, {}};
             site.stored = {double(frame.motion.view()(x, y, 0)), double(frame.motion.view()(x, y, 1))};
             if (has_depth) site.depth = frame.depth.view()(x, y);
             if (is_sky(site.depth) || !std::isfinite(site.stored.x + site.stored.y)) continue;
-            site.color = shown_at(color, static_cast<float>(x), static_cast<float>(y));
+            site.shown = shown_at(color, static_cast<float>(x), static_cast<float>(y));
             sites.push_back(site);
         }
     return sites;
@@ -124,10 +117,7 @@ bool is_of_other_depth(const Pair& pair, const Site& site, float x, float y) {
 double error_of(const Pair& pair, const Site& site, Point moved) {
     const float x = static_cast<float>(site.x + moved.x), y = static_cast<float>(site.y + moved.y);
     if (is_of_other_depth(pair, site, x, y)) return error_of_depth;
-    const std::array<float, 3> there = shown_at(pair.previous, x, y);
-    double sum = 0;
-    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(double(there[c]) - double(site.color[c]));
-    return sum / 3;
+    return std::abs(double(shown_at(pair.previous, x, y)) - double(site.shown));
 }
 
 std::vector<MotionConvention> motion_readings() {

@@ -16,8 +16,8 @@ namespace bandlimit::job {
 /// A reading, and how well it explains the pictures.
 struct ConventionCandidate {
     MotionConvention convention;
-    /// The mean distance of colours v / (1 + v), smoothed, between what pixels show and what the frame before shows where
-    /// the reading says they were; 0.2 where that is of another depth.
+    /// The mean difference in lightness, of colours v / (1 + v) and smoothed, between what pixels show and what the frame
+    /// before shows where the reading says they were; 0.2 where that is of another depth.
     double error = 0;
     /// How much the motion of the middle pixel changes from frame to frame, in pixels; 0 for less than three frames. It
     /// tells readings apart that lead to the same places: vectors that include the jitter from pictures without jitter.

