@@ -220,6 +220,7 @@ private:
             }
             step_row(pass_, {.y = y,
                              .gathered = &gathered(0, y - first),
+                             .near_y = known,
                              .guide = band.guide.view().data,
                              .box = rectifies ? band.box.view().data : nullptr,
                              .rows = rows});

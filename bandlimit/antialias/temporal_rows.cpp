@@ -355,7 +355,7 @@ private:
         float mismatch = 1;  ///< 1 where it is of something else
     };
 
-    HWY_INLINE Past PastOf(int x, const float* guide) const {
+    HWY_INLINE Past PastOf(int x, int near, const float* guide) const {
         Past past;
         past.sample.color = past.sample.sums = all(0);
         past.motion_x = guide[0] * scale_x_, past.motion_y = guide[1] * scale_y_;
@@ -367,15 +367,18 @@ private:
         past.sample = SampleHistory(pass_, x, line_.y, past.motion_x, past.motion_y);
         if (pass_.transparency.width > 0)
             past.transparency = Interpolated(pass_.transparency, x, line_.y, past.motion_x, past.motion_y);
-        past.mismatch = compares_surfaces_ ? MismatchOfSurface(guide, at_x, at_y) : 0;
+        if (compares_surfaces_)
+            past.mismatch = MismatchOfSurface(guide, depth_at(pass_.frame, near, line_.near_y), at_x, at_y);
+        else past.mismatch = 0;
         return past;
     }
 
     /// How much what the last frame saw about a place, in output pixels, is something else than what is there now: by
-    /// how little the depth of any of the four samples about it is like that of `guide`, or by the depth of the nearest
-    /// sample, where that moved otherwise. (Of a thin line that does not move, the nearest sample often misses it.) What
-    /// does not move now has not come in front of what was farther: the samples of that frame missed it.
-    HWY_INLINE float MismatchOfSurface(const float* guide, float x, float y) const {
+    /// how far the depth of any of the four samples about it is from those of `guide` and of the sample itself, which may
+    /// be of a slope, or by that of the nearest sample, where that moved otherwise. (Of a thin line that does not move,
+    /// the nearest sample often misses it.) What does not move now has not come in front of what was farther: the samples
+    /// of that frame missed it.
+    HWY_INLINE float MismatchOfSurface(const float* guide, float own_depth, float x, float y) const {
         const View<const float>& before = pass_.surface;
         x = x * surface_x_ + surface_left_, y = y * surface_y_ + surface_top_;
         const float fx = std::floor(x), fy = std::floor(y);
@@ -383,10 +386,10 @@ private:
         const int x0 = std::clamp(left, 0, before.width - 1), x1 = std::clamp(left + 1, 0, before.width - 1);
         const int y0 = std::clamp(top, 0, before.height - 1), y1 = std::clamp(top + 1, 0, before.height - 1);
         const float* const at[4] = {&before(x0, y0), &before(x1, y0), &before(x0, y1), &before(x1, y1)};
-        const Four then = four(*at[0], *at[1], *at[2], *at[3]), now = all(guide[2]);
-        Four relative = magnitude(then - now) / most(least(then, now), all(1e-6f));
-        if (std::abs(guide[0]) < still_motion && std::abs(guide[1]) < still_motion)
-            relative = where_more(then, now, all(0), relative);
+        const Four then = four(*at[0], *at[1], *at[2], *at[3]), near = all(guide[2]), far = all(own_depth);
+        const bool is_still = std::abs(guide[0]) < still_motion && std::abs(guide[1]) < still_motion;
+        const Four beyond = is_still ? all(0) : then - far;
+        const Four relative = most(most(beyond, near - then), all(0)) / most(least(then, far), all(1e-6f));
         const float closest = MismatchOfDepth(least_of(relative));
         const int i = (x - fx >= 0.5f ? 1 : 0) + (y - fy >= 0.5f ? 2 : 0);
         const float* const nearest = at[i];
@@ -449,7 +452,7 @@ private:
         const float* const guide = line_.guide + 4 * near;
         const float weight = pass_.gather.x[static_cast<std::size_t>(x)] * weight_y_;
         const Four gathered = load(line_.gathered + 4 * x);
-        Past past = PastOf(x, guide);
+        Past past = PastOf(x, near, guide);
         HistorySample& sample = past.sample;
         const float remembered = sample.weight;
         float outside = 0;

@@ -61,6 +61,7 @@ void box_row(const TemporalPass& pass, const FiniteRows& rows, int y, float* to)
 struct TemporalLine {
     int y = 0;                        ///< of the output
     const float* gathered = nullptr;  ///< the weighted samples about each output pixel
+    int near_y = 0;                   ///< the nearest input row
     const float* guide = nullptr;     ///< guide_row() of the nearest input row
     const float* box = nullptr;       ///< box_row() of it; none where nothing is rectified
     FiniteRows rows = {};             ///< at least those about it

@@ -194,16 +194,19 @@ constexpr std::string_view past_end = R"(    if (low.x > high.x) {
 )";
 
 constexpr std::string_view mismatch =
-    R"(// 0 for depths that agree, 1 for depths that do not. What does not move has not come in front of what was farther: the
-// samples of that frame missed it.
-function(float, NAME_unlike, in(float, then), in(float, now), in(bool, is_still)) {
-    let(float, relative) = abs(then - now) / max(min(then, now), 1e-6);
-    return choose(is_still && then > now, 0.0, clamp(relative * PER_TOLERANCE - 1.0, 0.0, 1.0));
+    R"(// 0 for a depth between `near` and `far`, or near these, 1 for others. What does not move has not come in front of what
+// was farther: the samples of that frame missed it.
+function(float, NAME_unlike, in(float, then), in(float, near), in(float, far), in(bool, is_still)) {
+    let(float, beyond) = choose(is_still, 0.0, then - far);
+    let(float, relative) = max(max(beyond, near - then), 0.0) / max(min(then, far), 1e-6);
+    return clamp(relative * PER_TOLERANCE - 1.0, 0.0, 1.0);
 }
 
 // How much the frame before saw something else there, by the depth of any of the four samples about the place, or by
 // that of the nearest one if it moved otherwise: of a thin line that does not move, the nearest sample often misses it.
-function(float, NAME_mismatch, texture(surface_before), in(NAME_frame, frame), in(float4, guide), in(float2, before)) {
+// `depth` is that of the sample itself, which may lie on a slope.
+function(float, NAME_mismatch, texture(surface_before), in(NAME_frame, frame), in(float4, guide), in(float, depth),
+    in(float2, before)) {
     let(bool, is_still) = max(abs(guide.x), abs(guide.y)) < STILL_MOTION;
     let(float2, place) = (before + 0.5) * (frame.size_before / frame.result_size) - 0.5 - frame.jitter_before;
     let(int2, base) = int2(floor(place));
@@ -212,13 +215,13 @@ function(float, NAME_mismatch, texture(surface_before), in(NAME_frame, frame), i
     loop(j, 0, 2, 1) {
         loop(i, 0, 2, 1) {
             let(float4, about) = load(surface_before, clamp(base + int2(i, j), int2(0, 0), last));
-            closest = min(closest, NAME_unlike(about.z, guide.z, is_still));
+            closest = min(closest, NAME_unlike(about.z, guide.z, depth, is_still));
         }
     }
     let(float4, seen) = load(surface_before, clamp(int2(floor(place + 0.5)), int2(0, 0), last));
     let(float2, change) = float2(seen.x - guide.x, seen.y - guide.y);
     let(float, otherwise) = clamp(sqrt(dot(change, change)) - VELOCITY_TOLERANCE, 0.0, 1.0);
-    return max(closest, min(NAME_unlike(seen.z, guide.z, is_still), otherwise));
+    return max(closest, min(NAME_unlike(seen.z, guide.z, depth, is_still), otherwise));
 }
 
 )";
@@ -503,8 +506,10 @@ std::string step_source(const TemporalOptions& o) {
     text = with(text, "BEFORE_PARAMETER", compares_depth(o) ? " texture(surface_before)," : "");
     text = with(text, "GUIDE", o.dilates_motion ? "NAME_guide(surface, near, last)" : "load(surface, near)");
     text.append("    var(float4, past) = NAME_past(history, frame, at, motion);\n").append(step_past);
-    text += message("    let(float, mismatch) = ",
-                    compares_depth(o) ? "NAME_mismatch(surface_before, frame, guide, before)" : "0.0", ";\n");
+    text += message(
+        "    let(float, mismatch) = ",
+        compares_depth(o) ? "NAME_mismatch(surface_before, frame, guide, load(surface, near).z, before)" : "0.0",
+        ";\n");
     text += follow_exposure;
     if (rectifies(o) || o.forget_by_motion > 0) text += "    let(float, speed) = sqrt(dot(motion, motion));\n";
     text += "    var(float, memory) = past.w * (1.0 - FORGETTING * mismatch);\n";
