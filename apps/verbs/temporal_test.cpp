@@ -235,6 +235,12 @@ TEST(TemporalVerb, BuffersMayHaveFilesOfTheirOwn) {
     EXPECT_TRUE(bytes_of(shell / "two/beauty_102_v2.exr") == wanted);
     EXPECT_TRUE(bytes_of(shell / "three/f_102.exr") == wanted);
     EXPECT_FALSE(bytes_of(shell / "four/f_102.exr") == wanted) << "another depth finds other things disoccluded";
+    const job::FrameSequence own = job::open_sequence({.folder = shell / "own",
+                                                       .color = "beauty_###_v2.exr",
+                                                       .depth = "depth_###.exr",
+                                                       .motion = "passes/vectors_###.exr"});
+    EXPECT_EQ(own.paths(1).size(), 3u) << "a run goes on only where none of them has changed";
+    EXPECT_EQ(job::open_sequence({.folder = shell / "in"}).paths(1).size(), 1u);
     // The colour's files are those that are not another buffer's.
     for (const std::string number : {"100", "101", "102"})
         std::filesystem::copy(shell / ("own/depth_" + number + ".exr"), shell / ("in/d_" + number + ".exr"));

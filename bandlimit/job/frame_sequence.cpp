@@ -297,6 +297,14 @@ SequenceFrame FrameSequence::read_stored(int i, int threads) const {
     return frame;
 }
 
+std::vector<std::string> FrameSequence::paths(int i) const {
+    const auto frame = static_cast<std::size_t>(i);
+    std::vector<std::string> all{files_[frame].path};
+    for (const Buffer* buffer : {&color_, &depth_, &motion_})
+        if (!buffer->paths.empty() && buffer->paths[frame] != all.front()) all.push_back(buffer->paths[frame]);
+    return all;
+}
+
 SequenceFrame FrameSequence::read(int i, int threads) const {
     SequenceFrame frame = read_stored(i, threads);
     frame.jitter = convention_.jitter_of(frame.jitter);

@@ -61,6 +61,8 @@ public:
     /// "frame_003.exr", and the number in it: 3, or -1.
     const std::string& name(int i) const { return files_[static_cast<std::size_t>(i)].name; }
     int number(int i) const { return files_[static_cast<std::size_t>(i)].number; }
+    /// All files that it is read from.
+    std::vector<std::string> paths(int i) const;
 
     /// throws   std::runtime_error for files that cannot be read, or are unlike the first
     SequenceFrame read(int i, int threads = 0) const;

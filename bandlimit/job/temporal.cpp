@@ -33,6 +33,7 @@ namespace fs = std::filesystem;
 struct Source {
     int count = 0, width = 0, height = 0, jitter_length = 0;
     std::string conventions;
+    std::string reading;  ///< all that these say, and the options that override them
     std::function<SequenceFrame(int)> read;
     std::function<std::string(int)> name;
     std::function<std::vector<std::string>(int)> files;  ///< that a frame is read from
@@ -80,7 +81,9 @@ Source source_of_folder(const TemporalJob& job, const Context& context) {
     source.jitter_length = sequence->jitter_length();
     source.conventions = sequence->conventions();
     source.read = [=, &context](int i) { return sequence->read(i, context.parallel.threads); };
-    source.files = [=](int i) { return std::vector{(fs::path(reading.folder) / sequence->name(i)).string()}; };
+    for (const auto& [option, value] : settings_of(sequence->convention()))
+        source.reading += fmt::format(" {} {}", option, value);
+    source.files = [=](int i) { return sequence->paths(i); };
     source.number = [=](int i) { return sequence->number(i); };
     source.name = [=](int i) { return sequence->name(i); };
     return source;
@@ -162,14 +165,12 @@ Image<float> read_frame(const std::string& path, const Parallel& parallel) {
 }
 
 /// All that decides what frames look like, besides the files of each.
-std::string settings_of(const TemporalJob& job, const TemporalReport& report, int frames) {
+std::string settings_of(const TemporalJob& job, const TemporalReport& report, const Source& source) {
     const SequenceJob& s = job.sequence;
-    const auto flag = [](const std::optional<bool>& value) { return value ? int(*value) : -1; };
     std::string text = fmt::format(
-        "{} {} {} {} {} {} {} {} {} {} {}\n{} {} {} {} {} {} {} {}", BANDLIMIT_VERSION, job.input, job.scale, frames,
+        "{} {} {} {} {} {} {} {} {} {} {}\n{} {} {} {} {} {}", BANDLIMIT_VERSION, job.input, job.scale, source.count,
         report.in_width, report.in_height, int(job.jitter), report.jitter_length, report.conventions, job.measures,
-        job.reference, s.color, s.depth, s.motion, s.motion_units ? int(*s.motion_units) : -1,
-        flag(s.is_previous_minus_current), flag(s.is_y_up), s.meta, s.meta.empty() ? "" : hash_of_file(s.meta));
+        job.reference, s.color, s.depth, s.motion, source.reading, s.meta, s.meta.empty() ? "" : hash_of_file(s.meta));
     for (const TemporalOptionInfo& info : temporal_option_infos())
         text += fmt::format("\n{} {}", info.name, option_value(job.options, info.name));
     return text;
@@ -224,7 +225,7 @@ Run::Run(const TemporalJob& job, const Context& context) : job_(job), context_(c
     folder_ = made_folder(job.out);
     history_.emplace(width, height);
     out_ = Image<float>(width, height, 4, Layout::interleaved);
-    checkpoint_.emplace(folder_, settings_of(job, report_, source_.count));
+    checkpoint_.emplace(folder_, settings_of(job, report_, source_));
     if (!job.measures) return;
     report_.measured_frames = settled_frames(source_.count, source_.jitter_length);
     settled_from_ = source_.count - report_.measured_frames;
