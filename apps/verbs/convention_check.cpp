@@ -70,6 +70,7 @@ void print(const std::string& folder, const std::string& conventions, const job:
     if (r.verdict == Verdict::right) row("best", r.best.error, "the same");
     if (r.verdict == Verdict::wrong) row("best", r.best.error, words(r.best.convention));
     row("still", r.still_error, "if nothing moved");
+    if (r.verdict == Verdict::cannot_tell) return;
     console.print("  readings by their errors in lightness, 0 to 1, and what they change:\n");
     for (std::size_t i = 0; i < std::min(most_rows, r.candidates.size()); ++i) {
         const job::ConventionCandidate& c = r.candidates[i];

@@ -194,8 +194,8 @@ double excess(const Way& way, const Way& other) {
 /// What all frames together show.
 struct Comparison {
     std::vector<Way> ways;
+    int width = 0, height = 0, pairs = 0;
     double sites = 0;
-    int pairs = 0;
     double largest_motion = 0;               ///< pixels, in the units that make the most of it
     std::vector<Point> turns, jitter_turns;  ///< by how much the middle stored vector changes, and the jitter's step
 };
@@ -237,6 +237,8 @@ Comparison compared(const StoredFrames& frames, const std::vector<MotionConventi
     result.ways = ways_of(all);
     const int count = std::min(frames.count, most_frames), first = (frames.count - count) / 2;
     SequenceFrame before = frames.read(first);
+    if (before.motion.width() == 0) throw std::runtime_error("the frames have no motion; pass vectors to check");
+    result.width = before.color.width(), result.height = before.color.height();
     Image<float> color_before = prepared(before.color.view());
     Point step_before;
     for (int i = 1; i < count; ++i) {
@@ -261,10 +263,10 @@ Comparison compared(const StoredFrames& frames, const std::vector<MotionConventi
 }
 
 /// The mean change of the middle vector between frames, in pixels, without the jitter that the reading takes away.
-double unsteadiness(const Comparison& c, const MotionConvention& reading, int width, int height) {
+double unsteadiness(const Comparison& c, const MotionConvention& reading) {
     double sum = 0;
     for (std::size_t i = 0; i < c.turns.size(); ++i) {
-        Point turn = reading.motion_of(c.turns[i], width, height);
+        Point turn = reading.motion_of(c.turns[i], c.width, c.height);
         if (reading.includes_jitter) turn = turn - reading.jitter_of(c.jitter_turns[i]);
         sum += std::hypot(turn.x, turn.y);
     }
@@ -322,9 +324,6 @@ std::vector<std::string> open_options(const ConventionReport& report) {
 ConventionReport check_conventions(const StoredFrames& frames, const Context& context) {
     if (frames.count < 2)
         throw std::runtime_error("the sequence has one frame; vectors are checked between frames, so render two");
-    const SequenceFrame first = frames.read(0);
-    if (first.motion.width() == 0) throw std::runtime_error("the frames have no motion; pass vectors to check");
-    const int width = first.color.width(), height = first.color.height();
     const std::vector<MotionConvention> all = readings(frames.convention, frames.has_jitter);
     const Comparison comparison = compared(frames, all, context);
     const double sites = std::max(comparison.sites, 1.0);
@@ -337,7 +336,7 @@ ConventionReport check_conventions(const StoredFrames& frames, const Context& co
     report.still_error = error(still);
     for (const MotionConvention& c : all) {
         const Way& way = *std::ranges::find(comparison.ways, simplest(c), &Way::convention);
-        report.candidates.push_back({c, error(way), unsteadiness(comparison, c, width, height)});
+        report.candidates.push_back({c, error(way), unsteadiness(comparison, c)});
     }
     std::ranges::stable_sort(report.candidates, is_nearer);
     mark_likely(report.candidates, comparison, nearest);
