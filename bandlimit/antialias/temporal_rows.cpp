@@ -111,7 +111,7 @@ void GuideRow(const TemporalPass& pass, int y, float* to) {
         }
         to[0] = motion_at(frame, nearest.x, nearest.y, 0), to[1] = motion_at(frame, nearest.x, nearest.y, 1);
         to[2] = nearest.depth;
-        to[3] = frame.reactive.width > 0 ? reaction_at(frame, x, y) : 0;
+        to[3] = depth_at(frame, x, y);
     }
 }
 
@@ -263,7 +263,8 @@ HWY_INLINE HistorySample SampleHistory(const TemporalPass& pass, int x, int y, f
     HistorySample result;
     result.color = result.sums = all(0);
     if (tx == 0 && ty == 0 && kernel != HistoryKernel::bspline) {
-        result.sums = load(&sums(std::clamp(x, 0, sums.width - 1), std::clamp(y, 0, sums.height - 1)));
+        result.sums =
+            load(sums.data + std::clamp(y, 0, sums.height - 1) * sums.dy + 4 * std::clamp(x, 0, sums.width - 1));
         result.weight = last_of(result.sums);
         result.is_exact = true;
         if (result.weight > pass.least_weight) result.color = result.sums / all(result.weight);
@@ -271,7 +272,8 @@ HWY_INLINE HistorySample SampleHistory(const TemporalPass& pass, int x, int y, f
     }
     alignas(16) float copy[64];
     const bool is_inside = x >= 1 && y >= 1 && x + 2 < sums.width && y + 2 < sums.height;
-    const Patch patch = is_inside ? Patch{&sums(x - 1, y - 1), sums.dy} : ClampedPatch(sums, x, y, copy);
+    const Patch patch =
+        is_inside ? Patch{sums.data + (y - 1) * sums.dy + 4 * (x - 1), sums.dy} : ClampedPatch(sums, x, y, copy);
     const Middle middle = MiddleOf(patch, tx, ty, pass.least_weight);
     if (!middle.remembers) return result;
     result.weight = middle.weight;
@@ -318,7 +320,10 @@ public:
           scale_x_(static_cast<float>(width_) / static_cast<float>(pass.frame.color.width)),
           scale_y_(static_cast<float>(height_) / static_cast<float>(pass.frame.color.height)),
           weight_y_(pass.gather.y[static_cast<std::size_t>(line.y)]),
+          next_row_(&pass.next_sums(0, line.y)),
+          out_row_(&pass.out(0, line.y)),
           has_history_(pass.sums.width > 0),
+          has_reactive_(pass.frame.reactive.width > 0),
           has_transparency_(pass.next_transparency.width > 0),
           has_debug_(pass.debug.frame_weight.width + pass.debug.memory.width + pass.debug.rejection.width +
                          pass.debug.motion.width + pass.debug.disocclusion.width >
@@ -355,7 +360,7 @@ private:
         float mismatch = 1;  ///< 1 where it is of something else
     };
 
-    HWY_INLINE Past PastOf(int x, int near, const float* guide) const {
+    HWY_INLINE Past PastOf(int x, const float* guide) const {
         Past past;
         past.sample.color = past.sample.sums = all(0);
         past.motion_x = guide[0] * scale_x_, past.motion_y = guide[1] * scale_y_;
@@ -367,9 +372,7 @@ private:
         past.sample = SampleHistory(pass_, x, line_.y, past.motion_x, past.motion_y);
         if (pass_.transparency.width > 0)
             past.transparency = Interpolated(pass_.transparency, x, line_.y, past.motion_x, past.motion_y);
-        if (compares_surfaces_)
-            past.mismatch = MismatchOfSurface(guide, depth_at(pass_.frame, near, line_.near_y), at_x, at_y);
-        else past.mismatch = 0;
+        past.mismatch = compares_surfaces_ ? MismatchOfSurface(guide, at_x, at_y) : 0;
         return past;
     }
 
@@ -378,15 +381,16 @@ private:
     /// be of a slope, or by that of the nearest sample, where that moved otherwise. (Of a thin line that does not move,
     /// the nearest sample often misses it.) What does not move now has not come in front of what was farther: the samples
     /// of that frame missed it.
-    HWY_INLINE float MismatchOfSurface(const float* guide, float own_depth, float x, float y) const {
+    HWY_INLINE float MismatchOfSurface(const float* guide, float x, float y) const {
         const View<const float>& before = pass_.surface;
         x = x * surface_x_ + surface_left_, y = y * surface_y_ + surface_top_;
         const float fx = std::floor(x), fy = std::floor(y);
         const int left = static_cast<int>(fx), top = static_cast<int>(fy);
         const int x0 = std::clamp(left, 0, before.width - 1), x1 = std::clamp(left + 1, 0, before.width - 1);
         const int y0 = std::clamp(top, 0, before.height - 1), y1 = std::clamp(top + 1, 0, before.height - 1);
-        const float* const at[4] = {&before(x0, y0), &before(x1, y0), &before(x0, y1), &before(x1, y1)};
-        const Four then = four(*at[0], *at[1], *at[2], *at[3]), near = all(guide[2]), far = all(own_depth);
+        const float *const above = before.data + y0 * before.dy, *const below = before.data + y1 * before.dy;
+        const float* const at[4] = {above + 4 * x0, above + 4 * x1, below + 4 * x0, below + 4 * x1};
+        const Four then = four(*at[0], *at[1], *at[2], *at[3]), near = all(guide[2]), far = all(guide[3]);
         const bool is_still = std::abs(guide[0]) < still_motion && std::abs(guide[1]) < still_motion;
         const Four beyond = is_still ? all(0) : then - far;
         const Four relative = most(most(beyond, near - then), all(0)) / most(least(then, far), all(1e-6f));
@@ -440,10 +444,10 @@ private:
     HWY_INLINE float MostWeight(float speed) const { return most_still_ / (1 + forget_by_motion_ * speed); }
 
     /// What is left of the memory of history that is doubted.
-    HWY_INLINE float Memory(const Past& past, float outside, float reactive) const {
+    HWY_INLINE float Memory(const Past& past, float outside, int near) const {
         float memory = past.sample.weight * (1 - past.mismatch * forgets_by_mismatch_);
         if (outside > 0) memory /= 1 + doubt_ * outside;
-        memory *= 1 - reactive;
+        if (has_reactive_) memory *= 1 - reaction_at(pass_.frame, near, line_.near_y);
         return std::min(memory, MostWeight(past.speed));
     }
 
@@ -452,7 +456,7 @@ private:
         const float* const guide = line_.guide + 4 * near;
         const float weight = pass_.gather.x[static_cast<std::size_t>(x)] * weight_y_;
         const Four gathered = load(line_.gathered + 4 * x);
-        Past past = PastOf(x, near, guide);
+        Past past = PastOf(x, guide);
         HistorySample& sample = past.sample;
         const float remembered = sample.weight;
         float outside = 0;
@@ -460,7 +464,7 @@ private:
             if (exposure_ != 1) FollowExposure(sample);
             if (line_.box != nullptr) outside = Rectify(past, line_.box + 8 * near);
         }
-        const float memory = remembered > 0 ? Memory(past, outside, guide[3]) : remembered;
+        const float memory = remembered > 0 ? Memory(past, outside, near) : remembered;
         Four next;
         float transparency = 0;
         if (options_.rule == Accumulation::weighted) {
@@ -471,8 +475,7 @@ private:
         } else {
             next = NextByPlainRule(x, past, gathered, weight, transparency);
         }
-        float* const to = &pass_.next_sums(x, line_.y);
-        store_past_caches(next, to);
+        store_past_caches(next, next_row_ + 4 * x);
         if (has_transparency_) pass_.next_transparency(x, line_.y) = transparency;
         Show(x, next, transparency);
         if (has_debug_) Note(x, weight, past, outside, last_of(next));
@@ -510,7 +513,7 @@ private:
 
     HWY_INLINE void Write(int x, Four color) const {
         const View<float>& out = pass_.out;
-        float* const to = &out(x, line_.y);
+        float* const to = out_row_ + x * out.dx;
         if (out.channels == 4 && out.dc == 1) return store(color, to);
         alignas(16) float lanes[4];
         store(color, lanes);
@@ -556,7 +559,8 @@ private:
     const TemporalOptions& options_;
     int width_, height_;
     float scale_x_, scale_y_, weight_y_;
-    bool has_history_, has_transparency_, has_debug_, compares_surfaces_;
+    float *next_row_, *out_row_;
+    bool has_history_, has_reactive_, has_transparency_, has_debug_, compares_surfaces_;
     float exposure_, per_tolerance_, box_size_, forgets_by_mismatch_, most_still_, forget_by_motion_, doubt_,
         rectify_share_, per_trust_;
     float surface_x_ = 1, surface_y_ = 1, surface_left_ = 0, surface_top_ = 0;  ///< output pixels to samples before

@@ -46,8 +46,8 @@ struct FiniteRows {
 /// the mean of the finite ones about them, or 0; highlights are compressed where the options say so.
 void finite_row(const TemporalPass& pass, int y, float* to);
 
-/// For every sample of row y: motion in input pixels, depth, and how much reacts, of the nearest of 3 x 3 samples or of
-/// itself.
+/// For every sample of row y: motion in input pixels and depth of the nearest of 3 x 3 samples, or of itself; then its
+/// own depth.
 void guide_row(const TemporalPass& pass, int y, float* to);
 
 /// Depth and motion of row y, for the next frame.
