@@ -53,6 +53,8 @@ void check_options(const TemporalOptions& o) {
     if (!(o.depth_tolerance > 0)) fail("accumulate: depth_tolerance = ", o.depth_tolerance, "; pass more than 0");
     if (!is_share(o.disocclusion_keep) || !is_share(o.rectify_share) || !is_share(o.sharpening))
         fail("accumulate: disocclusion_keep, rectify_share and sharpening are shares; pass 0 to 1");
+    if (!(o.anti_flicker >= 0 && o.deringing_frames >= 0 && std::isfinite(o.deringing_frames)))
+        fail("accumulate: anti_flicker and deringing_frames may not be below 0; pass e.g. 1 and 4, or 0 for none");
     if (!(o.box_size >= 0 && o.doubt >= 0))
         fail("accumulate: box_size and doubt may not be below 0; pass e.g. 1.25 and 0.02");
 }

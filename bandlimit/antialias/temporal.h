@@ -93,6 +93,13 @@ struct TemporalOptions {
     /// Compress values v above 1 to 1 + log(v) before they are averaged, and expand the result: otherwise one sample of a
     /// highlight outweighs all others. Values up to 1 do not change; means of brighter ones come out too dark.
     bool compresses_highlights = true;
+
+    /// Anti-flicker: a frame weighs 1 / (1 + anti_flicker d), d the difference of its luma and the history's, divided by
+    /// the larger one and 0.2. It steadies what the samples of few frames hit, and pulls the limit towards the history.
+    double anti_flicker = 0;
+    /// While history is of less than so many frames, the result is held within the range of the four samples about it,
+    /// the less the more there is: kernels with negative weights ring until then. The limit is not changed.
+    double deringing_frames = 0;
     double sharpening = 0;  ///< 0 to 1, of the result only: history is not sharpened
 };
 

@@ -108,6 +108,10 @@ constexpr std::array members{
         {"doubt", "0 or more", "memory that history loses per standard deviation beyond the box"}),
     flag<&Options::compresses_highlights>(
         {"compress-highlights", "yes or no", "average values v above 1 as 1 + log(v)"}),
+    number<&Options::anti_flicker, 0, -1>(
+        {"anti-flicker", "0 or more", "frames weigh 1 / (1 + this x relative difference of luma)"}),
+    number<&Options::deringing_frames, 0, 1000000>(
+        {"deringing-frames", "0 or more", "until history is of so many, no ringing beyond the samples"}),
     number<&Options::sharpening, 0, 1>({"sharpening", "0 to 1", "of what is shown; history is not sharpened"}),
 };
 

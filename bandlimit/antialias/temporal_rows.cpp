@@ -338,6 +338,8 @@ public:
           forget_by_motion_(static_cast<float>(pass.options.forget_by_motion)),
           doubt_(static_cast<float>(pass.options.doubt)),
           rectify_share_(static_cast<float>(pass.options.rectify_share)),
+          anti_flicker_(static_cast<float>(pass.options.anti_flicker)),
+          deringing_weight_(static_cast<float>(pass.options.deringing_frames * pass.gather.mean_weight)),
           per_trust_(1 / (pass.enough_weight - pass.least_weight)) {
         if (!compares_surfaces_) return;
         surface_x_ = static_cast<float>(pass.surface.width) / static_cast<float>(width_);
@@ -454,8 +456,8 @@ private:
     HWY_INLINE void Step(int x) const {
         const int near = pass_.gather.near_x[static_cast<std::size_t>(x)];
         const float* const guide = line_.guide + 4 * near;
-        const float weight = pass_.gather.x[static_cast<std::size_t>(x)] * weight_y_;
-        const Four gathered = load(line_.gathered + 4 * x);
+        float weight = pass_.gather.x[static_cast<std::size_t>(x)] * weight_y_;
+        Four gathered = load(line_.gathered + 4 * x);
         Past past = PastOf(x, guide);
         HistorySample& sample = past.sample;
         const float remembered = sample.weight;
@@ -463,6 +465,10 @@ private:
         if (remembered > pass_.least_weight) {
             if (exposure_ != 1) FollowExposure(sample);
             if (line_.box != nullptr) outside = Rectify(past, line_.box + 8 * near);
+            if (anti_flicker_ > 0 && weight > pass_.least_weight) {
+                const float share = Steadiness(gathered, weight, sample.color);
+                gathered = gathered * all(share), weight *= share;
+            }
         }
         const float memory = remembered > 0 ? Memory(past, outside, near) : remembered;
         Four next;
@@ -479,6 +485,17 @@ private:
         if (has_transparency_) pass_.next_transparency(x, line_.y) = transparency;
         Show(x, next, transparency);
         if (has_debug_) Note(x, weight, past, outside, last_of(next));
+    }
+
+    /// What a frame weighs beside history of another luma.
+    HWY_NOINLINE float Steadiness(Four gathered, float weight, Four history) const {
+        const float now = Luma(gathered) / weight, then = Luma(history);
+        const float most = std::max(std::max(now, then), least_luma);
+        return 1 / (1 + anti_flicker_ * std::abs(now - then) / most);
+    }
+
+    static HWY_INLINE float Luma(Four rgb) {
+        return first_of(spread<0>(rgb)) * 0.25f + first_of(spread<1>(rgb)) * 0.5f + first_of(spread<2>(rgb)) * 0.25f;
     }
 
     HWY_NOINLINE Four NextByPlainRule(int x, const Past& past, Four gathered, float weight, float& transparency) const {
@@ -507,6 +524,8 @@ private:
             const Four samples = InterpolatedInput(x);
             color = trust > 0 ? fma(color - samples, all(trust), samples) : samples;
         }
+        if (deringing_weight_ > 0 && memory < deringing_weight_)
+            color = Deringed(x, color, std::max(memory, 0.0f) / deringing_weight_);
         if (options_.compresses_highlights && most_of(with_last(color, 0)) > 1) color = Restored(color);
         Write(x, color);
     }
@@ -527,8 +546,31 @@ private:
         return load(lanes);
     }
 
+    /// Held within the range of the four samples about it, but for a share.
+    HWY_NOINLINE Four Deringed(int x, Four color, float share) const {
+        const FourSamples s = SamplesAbout(x);
+        const Four low = least(least(s.at[0], s.at[1]), least(s.at[2], s.at[3]));
+        const Four high = most(most(s.at[0], s.at[1]), most(s.at[2], s.at[3]));
+        const Four held = between(low, color, high);
+        return with_last(fma(color - held, all(share), held), last_of(color));
+    }
+
     /// The frame itself, interpolated, with alpha.
     HWY_NOINLINE Four InterpolatedInput(int x) const {
+        const FourSamples s = SamplesAbout(x);
+        const Four above = fma(s.at[1] - s.at[0], all(s.tx), s.at[0]),
+                   below = fma(s.at[3] - s.at[2], all(s.tx), s.at[2]);
+        const Four sample = fma(below - above, all(s.ty), above);
+        return with_last(sample, 1 - last_of(sample));
+    }
+
+    /// The samples of the frame about an output pixel, by rows, and where it lies between them.
+    struct FourSamples {
+        Four at[4];
+        float tx, ty;
+    };
+
+    HWY_INLINE FourSamples SamplesAbout(int x) const {
         const Point jitter = pass_.frame.jitter;
         const int width = pass_.frame.color.width, height = pass_.frame.color.height;
         const float at_x = (static_cast<float>(x) + 0.5f) / scale_x_ - 0.5f - static_cast<float>(jitter.x);
@@ -538,10 +580,7 @@ private:
         const auto at = [&](int i, int j) HWY_ATTR {
             return load(line_.rows.row(std::clamp(top + j, 0, height - 1)) + 4 * std::clamp(left + i, 0, width - 1));
         };
-        const Four tx = all(at_x - fx), above = fma(at(1, 0) - at(0, 0), tx, at(0, 0)),
-                   below = fma(at(1, 1) - at(0, 1), tx, at(0, 1));
-        const Four sample = fma(below - above, all(at_y - fy), above);
-        return with_last(sample, 1 - last_of(sample));
+        return {{at(0, 0), at(1, 0), at(0, 1), at(1, 1)}, at_x - fx, at_y - fy};
     }
 
     HWY_NOINLINE void Note(int x, float weight, const Past& past, float outside, float memory) const {
@@ -562,7 +601,7 @@ private:
     float *next_row_, *out_row_;
     bool has_history_, has_reactive_, has_transparency_, has_debug_, compares_surfaces_;
     float exposure_, per_tolerance_, box_size_, forgets_by_mismatch_, most_still_, forget_by_motion_, doubt_,
-        rectify_share_, per_trust_;
+        rectify_share_, anti_flicker_, deringing_weight_, per_trust_;
     float surface_x_ = 1, surface_y_ = 1, surface_left_ = 0, surface_top_ = 0;  ///< output pixels to samples before
 };
 

@@ -14,6 +14,7 @@ constexpr float velocity_tolerance = 0.5f;  ///< input pixels per frame
 constexpr float still_motion = 0.01f;       ///< the same; less is no motion
 constexpr float full_doubt_speed = 0.1f;    ///< output pixels per frame; what is slower is doubted less
 constexpr float least_extent = 0.02f;       ///< of a box, when something is measured by it
+constexpr float least_luma = 0.2f;          ///< when a difference of lumas is measured by one
 
 /// A frame on its way into the history: all of it, for every row. Rows of four floats a pixel are [4 x width] floats.
 struct TemporalPass {

@@ -342,7 +342,7 @@ constexpr std::string_view show_begin =
     R"(// The pixel of the result that a history shows, or, as far as that is too little, the frame itself between its samples.
 function(float4, NAME_show, texture(color), in(NAME_frame, frame), in(float4, sums), in(int2, at)) {
     var(float4, shown) = sums / max(sums.w, LEAST);
-    if (sums.w < ENOUGH) {
+LIMIT    if (sums.w < SHOWN_ALONE) {
         let(float2, place) = NAME_place(frame, at);
         let(float2, t) = place - floor(place);
         let(int2, base) = int2(floor(place));
@@ -355,9 +355,34 @@ function(float4, NAME_show, texture(color), in(NAME_frame, frame), in(float4, su
         let(float4, below) = c + t.x * (d - c);
         let(float4, alone) = above + t.y * (below - above);
         shown = alone + clamp((sums.w - LEAST) * PER_TRUST, 0.0, 1.0) * (shown - alone);
-    }
+DERINGED    }
     return RESTORED(float4(shown.x, shown.y, shown.z, 1.0));
 }
+)";
+
+constexpr std::string_view deringing_limit =
+    R"(    let(float2, pitch) = frame.size / frame.result_size;
+    let(float, rings) = DERINGING * pitch.x * pitch.y;
+)";
+
+constexpr std::string_view deringed = R"(        // Until there is more history, nothing rings beyond the samples.
+        if (sums.w < rings) {
+            let(float4, held) = clamp(shown, min(min(a, b), min(c, d)), max(max(a, b), max(c, d)));
+            shown = held + (max(sums.w, 0.0) / rings) * (shown - held);
+        }
+)";
+
+constexpr std::string_view steadiness =
+    R"(// What a frame weighs beside history of another luma.
+function(float, NAME_steadiness, in(float4, gathered), in(float4, past)) {
+    if (gathered.w <= LEAST || past.w <= LEAST) {
+        return 1.0;
+    }
+    let(float, now) = (0.25 * gathered.x + 0.5 * gathered.y + 0.25 * gathered.z) / gathered.w;
+    let(float, then) = (0.25 * past.x + 0.5 * past.y + 0.25 * past.z) / past.w;
+    return 1.0 / (1.0 + ANTI_FLICKER * abs(now - then) / max(max(now, then), LEAST_LUMA));
+}
+
 )";
 
 constexpr std::string_view sharpening = R"(
@@ -521,7 +546,15 @@ std::string step_source(const TemporalOptions& o) {
             "pitch.y";
         text += o.forget_by_motion > 0 ? " / (1.0 + FORGET_BY_MOTION * speed));\n" : ");\n";
     }
-    return text + "    return gathered + memory / past.w * past;\n}\n\n";
+    const char* const frame = o.anti_flicker > 0 ? "NAME_steadiness(gathered, past) * gathered" : "gathered";
+    return text + message("    return ", frame, " + memory / past.w * past;\n}\n\n");
+}
+
+std::string show_source(const TemporalOptions& o) {
+    const bool derings = o.deringing_frames > 0;
+    std::string text = with(std::string(show_begin), "LIMIT", derings ? deringing_limit : "");
+    text = with(text, "SHOWN_ALONE", derings ? "max(ENOUGH, rings)" : "ENOUGH");
+    return with(text, "DERINGED", derings ? deringed : "");
 }
 
 /// The constants of all parts.
@@ -533,6 +566,9 @@ std::string with_constants(std::string text, const TemporalOptions& o, double me
                                                         {"VELOCITY_TOLERANCE", velocity_tolerance},
                                                         {"STILL_MOTION", still_motion},
                                                         {"LEAST_EXTENT", least_extent},
+                                                        {"LEAST_LUMA", least_luma},
+                                                        {"ANTI_FLICKER", o.anti_flicker},
+                                                        {"DERINGING", o.deringing_frames * mean_weight},
                                                         {"LEAST", limits.least},
                                                         {"ENOUGH", limits.enough},
                                                         {"PER_TRUST", 1 / (limits.enough - limits.least)},
@@ -561,7 +597,8 @@ std::string source_of(const TemporalOptions& o, double mean_weight) {
     text += past_source(o);
     if (compares_depth(o)) text += mismatch;
     if (rectifies(o)) text += rectified_source(o);
-    text.append(step_source(o)).append(show_begin);
+    if (o.anti_flicker > 0) text += steadiness;
+    text.append(step_source(o)).append(show_source(o));
     if (o.sharpening > 0) text += sharpening;
     return with_constants(text, o, mean_weight);
 }

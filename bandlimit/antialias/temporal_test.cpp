@@ -289,6 +289,9 @@ TEST(Temporal, TargetsGiveTheSameBits) {
         }
     };
     for (const std::string_view preset : temporal_presets()) compare_with_definition(temporal_preset(preset), 3);
+    TemporalOptions steady = temporal_preset("sharp");
+    steady.anti_flicker = 1, steady.deringing_frames = 6;
+    compare_with_definition(steady, 4);
     for (const HistoryKernel kernel : history_kernels)
         for (const Rectification kind : {Rectification::clamp, Rectification::clip, Rectification::variance}) {
             TemporalOptions options;
@@ -645,6 +648,58 @@ TEST(Temporal, SharpensWithinTheNeighboursAndLeavesAlpha) {
                 EXPECT_NEAR(sharp.view()(x, y, c), c == 3 ? v : std::clamp(2 * v - mean, low, high), 1e-6)
                     << x << ' ' << c;
             }
+}
+
+// Lanczos rings beside an edge, most while a pixel has few samples; then it does what its limit does.
+TEST(Temporal, DeringingHoldsBackWhatRingsUntilThereIsMore) {
+    const Picture edge = [](double x, double y) { return x + 0.3 * y > 15 ? 1 : 0; };
+    TemporalOptions plain_options = temporal_preset("sharp");
+    plain_options.sharpening = 0;
+    TemporalOptions deringed = plain_options;
+    deringed.deringing_frames = 16;
+    double plain_ringing = 0, ringing = 0;
+    TemporalHistory a(48, 48), b(48, 48);
+    Image<float> with(48, 48, 3), without(48, 48, 3);
+    for (int f = 0; f < 40; ++f) {
+        const Image<float> color = rendered(edge, 24, 24, jitter_of(f));
+        accumulate(a, {.color = color.view(), .jitter = jitter_of(f)}, plain_options, without.view());
+        accumulate(b, {.color = color.view(), .jitter = jitter_of(f)}, deringed, with.view());
+        const auto beyond = [](float v) { return std::max({0.0, double(v) - 1, -double(v)}); };
+        for (int y = 0; y < 48 && f < 4; ++y)
+            for (int x = 0; x < 48; ++x)
+                plain_ringing += beyond(without.view()(x, y)), ringing += beyond(with.view()(x, y));
+    }
+    EXPECT_LT(ringing, plain_ringing / 4);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 48; ++x) ASSERT_EQ(with.view()(x, y), without.view()(x, y)) << "the limit";
+}
+
+// One sample in eight hits something bright.
+TEST(Temporal, AntiFlickerSteadiesAndLeavesConstantsAlone) {
+    const auto deviation = [](double strength) {
+        TemporalOptions options = plain();
+        options.still_frames = 8, options.anti_flicker = strength;
+        TemporalHistory history(4, 4);
+        Image<float> out(4, 4, 3);
+        double sum = 0, squares = 0;
+        for (int f = 0; f < 96; ++f) {
+            const float v = f % 8 == 3 ? 1 : 0.1f;
+            accumulate(history, {.color = filled(4, 4, {v, v, v}).view()}, options, out.view());
+            if (f < 32) continue;
+            const double shown = double(out.view()(2, 1));
+            sum += shown / 64, squares += shown * shown / 64;
+        }
+        return std::sqrt(squares - sum * sum);
+    };
+    EXPECT_LT(deviation(2), deviation(0) / 2);
+    TemporalOptions options;
+    options.anti_flicker = 3;
+    TemporalHistory history(9, 9);
+    Image<float> out(9, 9, 3);
+    for (int f = 0; f < 9; ++f)
+        accumulate(history, {.color = filled(6, 6, {0.25f, 0.5f, 0.125f}).view(), .jitter = jitter_of(f)}, options,
+                   out.view());
+    EXPECT_NEAR(out.view()(4, 4, 1), 0.5, 1e-6);
 }
 
 /// What becomes of `color` beside samples of that range, or that mean and spread, by the definition.

@@ -321,7 +321,8 @@ TemporalRun balanced() { return made("balanced", temporal_preset("balanced"), 1.
 
 /// Every kernel of the history and every rectification.
 std::vector<TemporalRun> all_runs() {
-    TemporalOptions smooth = temporal_preset("balanced"), five = smooth;
+    TemporalOptions smooth = temporal_preset("balanced"), five = smooth, steady = temporal_preset("sharp");
+    steady.anti_flicker = 1, steady.deringing_frames = 6;
     smooth.kernel = mitchell();
     smooth.history_kernel = HistoryKernel::bspline;
     smooth.rectification = Rectification::clip;
@@ -337,6 +338,7 @@ std::vector<TemporalRun> all_runs() {
             made("fast", temporal_preset("fast"), 1.5),
             made("sharp", temporal_preset("sharp"), 1.5),
             made("reference", temporal_preset("reference"), 1.5),
+            made("steady and deringed", steady, 1.5),
             made("clip smooth", smooth, 1.5),
             made("clamp five", five, 2)};
 }
