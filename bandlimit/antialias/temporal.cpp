@@ -55,6 +55,8 @@ void check_options(const TemporalOptions& o) {
         fail("accumulate: disocclusion_keep, rectify_share and sharpening are shares; pass 0 to 1");
     if (!(o.anti_flicker >= 0 && o.deringing_frames >= 0 && std::isfinite(o.deringing_frames)))
         fail("accumulate: anti_flicker and deringing_frames may not be below 0; pass e.g. 1 and 4, or 0 for none");
+    if (!(o.lock_frames == 0 || (o.lock_frames >= 1 && std::isfinite(o.lock_frames))))
+        fail("accumulate: lock_frames = ", o.lock_frames, "; pass 1 or more, e.g. 4, or 0 for none");
     if (!(o.box_size >= 0 && o.doubt >= 0))
         fail("accumulate: box_size and doubt may not be below 0; pass e.g. 1.25 and 0.02");
 }
@@ -119,7 +121,7 @@ TemporalHistory::TemporalHistory(int width, int height) {
 
 TemporalHistory TemporalHistory::clone() const {
     TemporalHistory copy(width(), height());
-    copy.now_ = {now_.sums.clone(), now_.transparency.clone(), now_.surface.clone()};
+    copy.now_ = {now_.sums.clone(), now_.transparency.clone(), now_.locks.clone(), now_.surface.clone()};
     copy.jitter_ = jitter_, copy.exposure_ = exposure_, copy.frames_ = frames_;
     return copy;
 }
@@ -172,19 +174,23 @@ private:
     /// The next history, and the views of both.
     void make_room() {
         const int width = history_.width(), height = history_.height();
-        auto& [sums, transparency, surface] = history_.next_;
+        auto& [sums, transparency, locks, surface] = history_.next_;
         if (sums.width() != width) sums = Image<float>(width, height, 4, Layout::interleaved);
         if (is_transparent()) transparency = Image<float>(width, height);
         else transparency = {};
+        if (pass_.options.lock_frames == 0) locks = {};
+        else if (locks.width() != width) locks = Image<float>(width, height);
         if (frame_.depth.width == 0) surface = {};
         else if (surface.width() != in_width_ || surface.height() != in_height_)
             surface = Image<float>(in_width_, in_height_, 4, Layout::interleaved);
         pass_.next_sums = sums.view();
         pass_.next_transparency = transparency.view();
+        pass_.next_locks = locks.view();
         pass_.next_surface = surface.view();
         if (!has_history_) return;
         pass_.sums = std::as_const(history_.now_.sums).view();
         pass_.transparency = std::as_const(history_.now_.transparency).view();
+        pass_.locks = std::as_const(history_.now_.locks).view();
         pass_.surface = std::as_const(history_.now_.surface).view();
     }
 

@@ -88,6 +88,9 @@ struct TemporalOptions {
     /// Of the way into the box, per frame, of what moves and has the right depth; else all of it. What is still is left
     /// alone: of a line that is thinner than a pixel, the samples of a frame about it know nothing.
     double rectify_share = 0.2;
+    /// Locks: a sample that is brighter or darker than all about it, as of a thin line, keeps its history from being moved
+    /// into the box; where it goes, for about so many frames. 0: none.
+    double lock_frames = 0;
     double doubt = 0.02;  ///< how much memory history loses, per standard deviation beyond the box
 
     /// Compress values v above 1 to 1 + log(v) before they are averaged, and expand the result: otherwise one sample of a
@@ -137,6 +140,7 @@ private:
     struct State {
         Image<float> sums;
         Image<float> transparency;  ///< 1 - alpha, times weight; empty while all is opaque
+        Image<float> locks;         ///< 0 to 1; empty while the options have none
         Image<float> surface;  ///< depth and motion of the last frame, as rendered [w x h x 4]; empty without depth
     };
     State now_, next_;  ///< the latter is what the former was before, to be written over

@@ -104,6 +104,8 @@ constexpr std::array members{
     number<&Options::box_size, 0, -1>({"box-size", "0 or more", "of the box, in standard deviations, for variance"}),
     number<&Options::rectify_share, 0, 1>(
         {"rectify-share", "0 to 1", "how far into the box what moves is taken per frame"}),
+    number<&Options::lock_frames, 0, 1000000>(
+        {"lock-frames", "0, or 1 or more", "how long thin things that move keep their colour"}),
     number<&Options::doubt, 0, -1>(
         {"doubt", "0 or more", "memory that history loses per standard deviation beyond the box"}),
     flag<&Options::compresses_highlights>(

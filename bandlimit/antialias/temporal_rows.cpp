@@ -360,6 +360,7 @@ private:
         float motion_x = 0, motion_y = 0;  ///< in output pixels
         float speed = 0;
         float mismatch = 1;  ///< 1 where it is of something else
+        float lock = 0;      ///< 1 where it is of something thin
     };
 
     HWY_INLINE Past PastOf(int x, const float* guide) const {
@@ -426,7 +427,7 @@ private:
         if (options_.rectifies_ycocg) inside = ToRgb(inside);
         const float moving = std::min(1.0f, past.speed * (1 / full_doubt_speed));
         const float least_share = rectify_share_ * moving;
-        const float share = least_share + (1 - least_share) * past.mismatch;
+        const float share = (least_share + (1 - least_share) * past.mismatch) * (1 - past.lock);
         past.sample.color = with_last(fma(inside - was, all(share), was), 1);
         if (share > 0) past.sample.is_exact = false;
         return outside * std::max(moving, past.mismatch);
@@ -462,6 +463,7 @@ private:
         HistorySample& sample = past.sample;
         const float remembered = sample.weight;
         float outside = 0;
+        if (pass_.next_locks.width > 0) UpdateLock(x, near, past);
         if (remembered > pass_.least_weight) {
             if (exposure_ != 1) FollowExposure(sample);
             if (line_.box != nullptr) outside = Rectify(past, line_.box + 8 * near);
@@ -485,6 +487,37 @@ private:
         if (has_transparency_) pass_.next_transparency(x, line_.y) = transparency;
         Show(x, next, transparency);
         if (has_debug_) Note(x, weight, past, outside, last_of(next));
+    }
+
+    /// Locks what is thin now, and takes along what was locked where the pixel comes from.
+    HWY_NOINLINE void UpdateLock(int x, int near, Past& past) const {
+        float before = 0;
+        if (pass_.locks.width > 0 && past.sample.weight > 0)
+            before = Interpolated(pass_.locks, x, line_.y, past.motion_x, past.motion_y) * (1 - past.mismatch);
+        const float now = IsThin(near) ? 1 : 0;
+        past.lock = std::max(before, now);
+        pass_.next_locks(x, line_.y) = std::max(before * static_cast<float>(1 - 1 / options_.lock_frames), now);
+    }
+
+    /// Whether sample `x` of the nearest row is brighter, or darker, than all about it that are not like it, and those
+    /// that are do not make a square with it, as they would inside of something.
+    bool IsThin(int x) const {
+        const int y = line_.near_y, width = pass_.frame.color.width, height = pass_.frame.color.height;
+        if (x < 1 || y < 1 || x > width - 2 || y > height - 2) return false;
+        const float own = Luma(load(line_.rows.row(y) + 4 * x));
+        bool is_alike[3][3];
+        float low = 3e38f, high = -3e38f;
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const float luma = Luma(load(line_.rows.row(y + j - 1) + 4 * (x + i - 1)));
+                is_alike[j][i] = std::max(luma, own) <= alike_luma * std::min(luma, own) + alike_noise;
+                if (!is_alike[j][i]) low = std::min(low, luma), high = std::max(high, luma);
+            }
+        if (low > high || !(own > high || own < low)) return false;
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i)
+                if (is_alike[j][i] && is_alike[j][i + 1] && is_alike[j + 1][i] && is_alike[j + 1][i + 1]) return false;
+        return true;
     }
 
     /// What a frame weighs beside history of another luma.

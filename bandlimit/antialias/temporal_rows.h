@@ -14,6 +14,8 @@ constexpr float velocity_tolerance = 0.5f;  ///< input pixels per frame
 constexpr float still_motion = 0.01f;       ///< the same; less is no motion
 constexpr float full_doubt_speed = 0.1f;    ///< output pixels per frame; what is slower is doubted less
 constexpr float least_extent = 0.02f;       ///< of a box, when something is measured by it
+constexpr float alike_luma = 1.1f;          ///< the ratio of lumas up to which samples are of the same thing,
+constexpr float alike_noise = 0.02f;        ///< or this difference
 constexpr float least_luma = 0.2f;          ///< when a difference of lumas is measured by one
 
 /// A frame on its way into the history: all of it, for every row. Rows of four floats a pixel are [4 x width] floats.
@@ -25,8 +27,8 @@ struct TemporalPass {
 
     /// Of the history, as it is and as it becomes; what there is none of has width 0. `transparency` is 1 - alpha, times
     /// weight; `surface` [w x h x 4] depth and motion as rendered, in input pixels.
-    View<const float> sums = {}, transparency = {}, surface = {};
-    View<float> next_sums = {}, next_transparency = {}, next_surface = {};
+    View<const float> sums = {}, transparency = {}, locks = {}, surface = {};
+    View<float> next_sums = {}, next_transparency = {}, next_locks = {}, next_surface = {};
     Point surface_jitter{};
     double surface_exposure = 1;
     View<float> out = {};

@@ -620,6 +620,7 @@ std::string temporal_shader(const TemporalOptions& options, const ShaderInfo& in
     check_options(options);
     if (options.rule != Accumulation::weighted)
         fail("temporal_shader: only the rule `weighted` has a shader; pass e.g. temporal_preset(\"balanced\")");
+    if (options.lock_frames > 0) fail("temporal_shader: locks have no shader; pass lock_frames = 0");
     const double mean_weight = frame_gather(options.kernel, false, 8, 8, 8, 8, {}).mean_weight;  // at 1x
     const Header header{options.sharpening > 0
                             ? "Antialiasing and upscaling over time. NAME_step makes the next history, NAME_show the "

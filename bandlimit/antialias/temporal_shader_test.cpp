@@ -52,6 +52,9 @@ TEST(TemporalShader, SaysWhatItCosts) {
 TEST(TemporalShader, RefusesWhatHasNoShader) {
     EXPECT_THROW(emitted(temporal_preset("per-frame")), Error);
     EXPECT_THROW(emitted(temporal_preset("input-sized")), Error);
+    TemporalOptions locked;
+    locked.lock_frames = 4;
+    EXPECT_THROW(emitted(locked), Error);
     TemporalOptions options;
     options.kernel = jinc_lanczos(3);
     EXPECT_THROW(emitted(options), Error);

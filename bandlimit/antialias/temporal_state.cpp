@@ -39,6 +39,7 @@ public:
         using P = Part<std::conditional_t<std::is_const_v<History>, const Image<float>, Image<float>>>;
         return std::array{P{h.now_.sums, 4, Layout::interleaved, Size::of_value},
                           P{h.now_.transparency, 1, Layout::planar, Size::of_value_or_none},
+                          P{h.now_.locks, 1, Layout::planar, Size::of_value_or_none},
                           P{h.now_.surface, 4, Layout::interleaved, Size::up_to_value}};
     }
     template <class Meter>
