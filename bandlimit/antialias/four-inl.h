@@ -1,19 +1,21 @@
-// Four floats at a time: a pixel, or what belongs to four taps. Included once per target, after <hwy/highway.h>; see
+// Four floats at a time: a pixel, or what belongs to four taps. Once per instruction set; see
 // core/dispatch.h.
 // Stability: inner.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include "bandlimit/core/dispatch.h"
+
 #if defined(BANDLIMIT_ANTIALIAS_FOUR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BANDLIMIT_ANTIALIAS_FOUR_INL_H
 #undef BANDLIMIT_ANTIALIAS_FOUR_INL_H
 #else
 #define BANDLIMIT_ANTIALIAS_FOUR_INL_H
 #endif
-
-#include <hwy/cache_control.h>
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
-#include "bandlimit/core/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
