@@ -31,8 +31,9 @@ std::vector<float> space_weights(double sigma, int radius_x, int radius_y) {
     return weights;
 }
 
-/// A square without borders of weight 0.
-int trimmed(int radius, double sigma) {
+/// How far a window reaches along an axis of `samples` before all is missing or has weight 0.
+int trimmed(int radius, double sigma, int samples, Edge edge) {
+    if (edge == Edge::renormalize) radius = std::min(radius, std::max(0, samples - 1));
     while (radius > 0 && static_cast<float>(space_weight(radius, sigma)) == 0) --radius;
     return radius;
 }
@@ -41,18 +42,23 @@ int trimmed(int radius, double sigma) {
 struct Plan {
     Plan(int width_, int height_, const BilateralOptions& o, View<const float> guide_);
 
-    IndexRange rows_read(int first, int last) const { return {first - radius, last + radius}; }
+    IndexRange rows_read(int first, int last) const { return {first - radius_y, last + radius_y}; }
     double bytes(int channels, const Parallel& parallel) const;
 
     int width, height;
     BilateralOptions options;
     View<const float> guide;  ///< of width 0: none
-    int radius;
-    std::vector<float> square, line;  ///< weights in space
+    int radius_x, radius_y;
+    std::vector<float> window, row, column;  ///< weights in space
 };
 
 Plan::Plan(int width_, int height_, const BilateralOptions& o, View<const float> guide_)
-    : width(width_), height(height_), options(o), guide(guide_), radius(trimmed(bilateral_radius(o), o.sigma_space)) {
+    : width(width_),
+      height(height_),
+      options(o),
+      guide(guide_),
+      radius_x(trimmed(bilateral_radius(o), o.sigma_space, width, o.edge_x)),
+      radius_y(trimmed(bilateral_radius(o), o.sigma_space, height, o.edge_y)) {
     if (width < 1 || height < 1) fail("bilateral_filter: ", width, " x ", height, " samples; pass at least 1 x 1");
     if (guide.width > 0) {
         if (guide.width != width || guide.height != height)
@@ -60,13 +66,17 @@ Plan::Plan(int width_, int height_, const BilateralOptions& o, View<const float>
                  height, "; pass one of the same size");
         const RangeChannels check(o.sigma_range, guide.channels);
     }
-    if (o.separable) line = space_weights(o.sigma_space, radius, 0);
-    else square = space_weights(o.sigma_space, radius, radius);
+    if (o.separable) {
+        row = space_weights(o.sigma_space, radius_x, 0);
+        column = space_weights(o.sigma_space, 0, radius_y);
+    } else {
+        window = space_weights(o.sigma_space, radius_x, radius_y);
+    }
 }
 
 double Plan::bytes(int channels, const Parallel& parallel) const {
-    const double columns = std::min(width, std::max(least_columns, 2 * radius)) + 2.0 * radius;
-    const double rows = std::min(height, std::max(least_rows, 2 * radius)) + 2.0 * radius;
+    const double columns = std::min(width, std::max(least_columns, 2 * radius_x)) + 2.0 * radius_x;
+    const double rows = std::min(height, std::max(least_rows, 2 * radius_y)) + 2.0 * radius_y;
     const int guides = guide.width > 0 ? guide.channels : channels;
     return parallel.count() * columns * rows * static_cast<double>(sizeof(float)) * (2.0 * channels + guides + 1);
 }
@@ -106,8 +116,8 @@ public:
           guide_rows_{plan.guide, 0, {}},
           guides_self_(plan.guide.width == 0),
           range_(plan.options.sigma_range, guides_self_ ? run.channels : plan.guide.channels),
-          tile_({columns.begin - plan.radius, columns.end + plan.radius},
-                {rows.begin - plan.radius, rows.end + plan.radius}, run.channels, range_),
+          tile_({columns.begin - plan.radius_x, columns.end + plan.radius_x},
+                {rows.begin - plan.radius_y, rows.end + plan.radius_y}, run.channels, range_),
           out_row_((columns.count() / 16 + 1) * 16),
           out_plane_(out_row_ * rows.count()),
           out_(static_cast<std::size_t>(out_plane_ * run.channels)) {}
@@ -125,10 +135,10 @@ public:
 private:
     void filter(int first, int count) {
         tile_.mark(first, count);
-        if (!plan_.options.separable) return filter_rows(first, count, plan_.radius, plan_.radius, plan_.square);
+        if (!plan_.options.separable) return filter_rows(first, count, plan_.radius_x, plan_.radius_y, plan_.window);
         blur_along_x(first, count);
         tile_.mark(first, count);
-        filter_rows(first, count, 0, plan_.radius, plan_.line);
+        filter_rows(first, count, 0, plan_.radius_y, plan_.column);
     }
 
     void filter_rows(int first, int count, int radius_x, int radius_y, const std::vector<float>& space) {
@@ -140,9 +150,9 @@ private:
     /// In place, in all rows of the tile.
     void blur_along_x(int first, int count) {
         std::vector<float> blurred(static_cast<std::size_t>(out_row_ * count));
-        for (int y = rows_.begin - plan_.radius; y < rows_.end + plan_.radius; ++y) {
+        for (int y = rows_.begin - plan_.radius_y; y < rows_.end + plan_.radius_y; ++y) {
             if (tile_.is_lost_row(y)) continue;
-            filter_row(y, first, count, plan_.radius, 0, plan_.line, blurred.data(), out_row_);
+            filter_row(y, first, count, plan_.radius_x, 0, plan_.row, blurred.data(), out_row_);
             for (int c = 0; c < count; ++c)
                 std::copy_n(blurred.data() + c * out_row_, columns_.count(),
                             tile_.signal(columns_.begin, y, first + c));
@@ -199,8 +209,8 @@ private:
 
 RowWork start(const Plan& plan, const RowRun& run) {
     if (plan.guide.width == 0) const RangeChannels check(plan.options.sigma_range, run.channels);
-    const int length = std::max(least_columns, 2 * plan.radius), across = (plan.width - 1) / length + 1;
-    const RowParts rows(run.rows(), std::max(least_rows, 2 * plan.radius), std::numeric_limits<int>::max());
+    const int length = std::max(least_columns, 2 * plan.radius_x), across = (plan.width - 1) / length + 1;
+    const RowParts rows(run.rows(), std::max(least_rows, 2 * plan.radius_y), std::numeric_limits<int>::max());
     return {rows.count() * across, [&plan, &run, rows, length, across](int piece) {
                 const int first = piece % across * length;
                 return TileRun(plan, run, {first, std::min(plan.width, first + length)}, rows[piece / across])();

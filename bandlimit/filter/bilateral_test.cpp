@@ -54,7 +54,7 @@ void expect_near(const Image<float>& a, const Image<float>& b, double tolerance)
     double worst = 0;
     for_each_sample(a, [&](int x, int y, int c) {
         const double error = std::abs(static_cast<double>(a.view()(x, y, c)) - static_cast<double>(b.view()(x, y, c)));
-        worst = error <= worst ? worst : error;  // NaN counts
+        worst = std::max(worst, std::isnan(error) ? infinity : error);
     });
     EXPECT_LE(worst, tolerance);
 }

@@ -36,7 +36,7 @@ double largest_difference(const Image<float>& a, const Image<float>& b) {
         for (int y = 0; y < a.height(); ++y)
             for (int x = 0; x < a.width(); ++x) {
                 const double d = std::abs(static_cast<double>(a.view()(x, y, c) - b.view()(x, y, c)));
-                worst = d <= worst ? worst : d;  // NaN counts
+                worst = std::max(worst, std::isnan(d) ? infinity : d);
             }
     return worst;
 }
