@@ -12,6 +12,25 @@
 
 #include "bandlimit/core/dispatch.h"
 
+#ifndef BANDLIMIT_FILTER_WINDOW_ROWS_ONCE
+#define BANDLIMIT_FILTER_WINDOW_ROWS_ONCE
+namespace bandlimit {
+
+/// The definition of sum_blocks(), for one row.
+inline void sum_blocks_of_row(const double* in, double* out, int length, int width, double* suffix) {
+    for (int start = 0; start < width; start += length) {
+        double sum = 0, rest = 0;
+        for (int i = length - 1; i >= 0; --i) suffix[i] = sum += in[start + i];
+        for (int i = 0, end = std::min(length, width - start); i < end; ++i) {
+            out[start + i] = suffix[i] + rest;
+            rest += in[start + length + i];
+        }
+    }
+}
+
+}  // namespace bandlimit
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace bandlimit {
 namespace HWY_NAMESPACE {
@@ -40,6 +59,107 @@ void SlideRow(double* to, const double* in, const double* out, int count, std::u
         hn::StoreU(sum, d, to + x);
     }
 }
+
+#if HWY_MAX_BYTES >= 32
+using Four = hn::FixedTag<double, 4>;
+using Fours = hn::Vec<Four>;
+
+/// Four rows of four become four columns.
+HWY_INLINE void Transpose(Fours* v) {
+    const Four d;
+    const Fours low01 = hn::InterleaveLower(d, v[0], v[1]), high01 = hn::InterleaveUpper(d, v[0], v[1]);
+    const Fours low23 = hn::InterleaveLower(d, v[2], v[3]), high23 = hn::InterleaveUpper(d, v[2], v[3]);
+    v[0] = hn::ConcatLowerLower(d, low23, low01), v[1] = hn::ConcatLowerLower(d, high23, high01);
+    v[2] = hn::ConcatUpperUpper(d, low23, low01), v[3] = hn::ConcatUpperUpper(d, high23, high01);
+}
+
+/// Sample x of four rows.
+HWY_INLINE Fours ColumnAt(const double* const* rows, int x) {
+    const double column[4] = {rows[0][x], rows[1][x], rows[2][x], rows[3][x]};
+    return hn::LoadU(Four(), column);
+}
+
+/// Four samples of four rows, as columns.
+HWY_INLINE void LoadColumns(const double* const* rows, int x, Fours* columns) {
+    for (int r = 0; r < 4; ++r) columns[r] = hn::LoadU(Four(), rows[r] + x);
+    Transpose(columns);
+}
+
+/// Of G times four rows, the sums from each sample of a block to its end: suffix[4 (G i + g)] are those of sample i.
+template <int G>
+HWY_INLINE void SumBackwards(const double* const* in, int start, int length, double* suffix) {
+    const Four d;
+    Fours sums[G];
+    for (int g = 0; g < G; ++g) sums[g] = hn::Zero(d);
+    int i = length;
+    for (; i >= 4; i -= 4)
+        for (int g = 0; g < G; ++g) {
+            Fours columns[4];
+            LoadColumns(in + 4 * g, start + i - 4, columns);
+            for (int k = 3; k >= 0; --k) {
+                sums[g] = hn::Add(sums[g], columns[k]);
+                hn::StoreU(sums[g], d, suffix + 4 * (G * (i - 4 + k) + g));
+            }
+        }
+    for (--i; i >= 0; --i)
+        for (int g = 0; g < G; ++g) {
+            sums[g] = hn::Add(sums[g], ColumnAt(in + 4 * g, start + i));
+            hn::StoreU(sums[g], d, suffix + 4 * (G * i + g));
+        }
+}
+
+/// Those and the sums of the next block up to where windows of the first `count` samples end.
+template <int G>
+HWY_INLINE void SumForwards(const double* const* in, double* const* out, int start, int length, int count,
+                            const double* suffix) {
+    const Four d;
+    Fours rest[G];
+    for (int g = 0; g < G; ++g) rest[g] = hn::Zero(d);
+    int i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int g = 0; g < G; ++g) {
+            Fours columns[4], sums[4];
+            LoadColumns(in + 4 * g, start + length + i, columns);
+            for (int k = 0; k < 4; ++k) {
+                sums[k] = hn::Add(hn::LoadU(d, suffix + 4 * (G * (i + k) + g)), rest[g]);
+                rest[g] = hn::Add(rest[g], columns[k]);
+            }
+            Transpose(sums);
+            for (int r = 0; r < 4; ++r) hn::StoreU(sums[r], d, out[4 * g + r] + start + i);
+        }
+    for (; i < count; ++i)
+        for (int g = 0; g < G; ++g) {
+            double column[4];
+            hn::StoreU(hn::Add(hn::LoadU(d, suffix + 4 * (G * i + g)), rest[g]), d, column);
+            for (int r = 0; r < 4; ++r) out[4 * g + r][start + i] = column[r];
+            rest[g] = hn::Add(rest[g], ColumnAt(in + 4 * g, start + length + i));
+        }
+}
+
+template <int G>
+void SumBlocksOf(const double* const* in, double* const* out, int length, int width, double* suffix) {
+    for (int start = 0; start < width; start += length) {
+        SumBackwards<G>(in, start, length, suffix);
+        SumForwards<G>(in, out, start, length, std::min(length, width - start), suffix);
+    }
+}
+
+void SumBlocks(int rows, const double* const* in, double* const* out, int length, int width, double* suffix) {
+    int r = 0;
+    for (; r + 8 <= rows; r += 8) SumBlocksOf<2>(in + r, out + r, length, width, suffix);
+    for (; r + 4 <= rows; r += 4) SumBlocksOf<1>(in + r, out + r, length, width, suffix);
+    if (r == rows) return;
+    if (rows >= 4) {  // some again
+        SumBlocksOf<1>(in + rows - 4, out + rows - 4, length, width, suffix);
+        return;
+    }
+    for (; r < rows; ++r) sum_blocks_of_row(in[r], out[r], length, width, suffix);
+}
+#else
+void SumBlocks(int rows, const double* const* in, double* const* out, int length, int width, double* suffix) {
+    for (int r = 0; r < rows; ++r) sum_blocks_of_row(in[r], out[r], length, width, suffix);
+}
+#endif
 
 void MultiplyRows(const double* a, const double* b, double* to, int count) {
     const D d;
@@ -176,6 +296,7 @@ HWY_AFTER_NAMESPACE();
 namespace bandlimit {
 
 BANDLIMIT_EXPORT(SlideRow);
+BANDLIMIT_EXPORT(SumBlocks);
 BANDLIMIT_EXPORT(MultiplyRows);
 BANDLIMIT_EXPORT(RecentreRow);
 BANDLIMIT_EXPORT(Widen);
@@ -183,6 +304,9 @@ BANDLIMIT_EXPORT(SolveLinearRow);
 
 void slide_row(double* to, const double* in, const double* out, int count, std::uint8_t* begins_anew) {
     BANDLIMIT_DISPATCH(SlideRow)(to, in, out, count, begins_anew);
+}
+void sum_blocks(int rows, const double* const* in, double* const* out, int length, int width, double* suffix) {
+    BANDLIMIT_DISPATCH(SumBlocks)(rows, in, out, length, width, suffix);
 }
 void multiply_rows(const double* a, const double* b, double* to, int count) {
     BANDLIMIT_DISPATCH(MultiplyRows)(a, b, to, count);

@@ -13,6 +13,12 @@ constexpr int window_group = 8;
 /// left.
 void slide_row(double* to, const double* in, const double* out, int count, std::uint8_t* begins_anew);
 
+/// out[row][x] = the sum of in[row][x .. x + length) for x in [0, width): of the end of a block of that length, from behind,
+/// and of the beginning of the next one, so that nothing is taken away.
+///
+/// shapes   in has width + length samples, of which the last is not used; `suffix` is room for 8 length numbers
+void sum_blocks(int rows, const double* const* in, double* const* out, int length, int width, double* suffix);
+
 /// to = a b.
 void multiply_rows(const double* a, const double* b, double* to, int count);
 

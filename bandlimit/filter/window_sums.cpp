@@ -47,12 +47,12 @@ public:
           fill_(fill),
           rx_(reach(window.width, window.radius, window.edge)),
           ry_(reach(window.height, window.radius, window.edge)),
-          columns_(planes, window.width + rx_, rx_),
+          columns_(planes, window.width + rx_ + 1, rx_),  // sum_blocks() reads one more
           entering_(planes, window.width),
           leaving_(planes, window.width),
           sums_(planes, window.width),
           fresh_(planes, group),
-          suffix_(static_cast<std::size_t>(4) * static_cast<std::size_t>(2 * rx_ + 1)),
+          suffix_(static_cast<std::size_t>(8) * static_cast<std::size_t>(2 * rx_ + 1)),
           begins_anew_(padded(window.width) / group) {}
 
     void run(IndexRange rows, const TakeSums& take) {
@@ -96,18 +96,9 @@ private:
 
     void sum_along_x() {
         if (!adds_nothing_outside(window_.edge)) extend();
-        for (int p = 0; p < planes_; p += 4) {
-            const int count = std::min(4, planes_ - p);
-            const double* in[4];
-            double* out[4];
-            for (int i = 0; i < count; ++i) in[i] = columns_[p + i] - rx_, out[i] = sums_[p + i];
-            switch (count) {
-                case 1: sum_blocks<1>(in, out); break;
-                case 2: sum_blocks<2>(in, out); break;
-                case 3: sum_blocks<3>(in, out); break;
-                default: sum_blocks<4>(in, out);
-            }
-        }
+        std::vector<const double*> in;
+        for (int p = 0; p < planes_; ++p) in.push_back(columns_[p] - rx_);
+        sum_blocks(planes_, in.data(), sums_.get(), 2 * rx_ + 1, window_.width, suffix_.data());
     }
 
     /// What the columns outside hold.
@@ -116,25 +107,6 @@ private:
             if (x == 0) x = window_.width;
             if (x >= window_.width + rx_) break;
             for (int p = 0; p < planes_; ++p) columns_[p][x] = columns_[p][resolve(x, window_.width, window_.edge)];
-        }
-    }
-
-    /// out[x] = the sum of in[x .. x + length): the end of a block, from behind, and the beginning of the next one.
-    template <int N>
-    void sum_blocks(const double* const* in, double* const* out) {
-        const int length = 2 * rx_ + 1;
-        double* const suffix = suffix_.data();
-        for (int start = 0; start < window_.width; start += length) {
-            double sums[N] = {};
-            for (int i = length - 1; i >= 0; --i)
-                for (int n = 0; n < N; ++n) suffix[i * N + n] = sums[n] += in[n][start + i];
-            double rest[N] = {};
-            for (int i = 0, end = std::min(length, window_.width - start); i < end; ++i)
-                for (int n = 0; n < N; ++n) {
-                    out[n][start + i] = suffix[i * N + n] + rest[n];
-                    // The last of these is read beyond the windows where nothing uses it.
-                    if (i + 1 < end) rest[n] += in[n][start + length + i];
-                }
         }
     }
 
