@@ -29,6 +29,7 @@ void add_verbs(Program& program) {
     add_convolve(program);
     add_bokeh(program);
     add_bilateral(program);
+    add_guided(program);
     add_mips(program);
     add_pattern(program);
     add_supersample(program);

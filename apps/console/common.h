@@ -38,6 +38,7 @@ void add_resize(Program& program);
 void add_convolve(Program& program);
 void add_bokeh(Program& program);
 void add_bilateral(Program& program);
+void add_guided(Program& program);
 void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_supersample(Program& program);
