@@ -36,14 +36,26 @@ TEST(Files, EveryVerbRefusesToReadWhatIsNoRegularFile) {
     save_noise(shell / "in.png");
     fs::create_directory(shell / "pictures");
     const std::vector<std::string> kinds = make_no_files(shell);
-    for (const std::string line :
-         {"resize X.png out.png --size 9x9", "resize in.png out.png --size 9x9 --kernel X.json",
-          "convolve X.png out.png --taps X.json", "convolve in.png out.png --taps X.json",
-          "convolve in.png out.png --image X.png", "bokeh X.png out.png --radius 3",
-          "bokeh in.png out.png --radius 3 --shape X.png", "mips X.png out.ktx2", "mips X.ktx2 out.dds",
-          "mips X.ktx2 out.dds --keep-levels", "mips in.png out.ktx2 --filter X.json",
-          "mips in.png out.ktx2 --role roughness --normal X.png", "mips --batch pictures out --rules X.json",
-          "compare X.png in.png", "compare in.png X.png", "analyze X.json", "info X.png", "info X.ktx2"})
+    for (const std::string line : {"resize X.png out.png --size 9x9",
+                                   "resize in.png out.png --size 9x9 --kernel X.json",
+                                   "convolve X.png out.png --taps X.json",
+                                   "convolve in.png out.png --taps X.json",
+                                   "convolve in.png out.png --image X.png",
+                                   "bokeh X.png out.png --radius 3",
+                                   "bokeh in.png out.png --radius 3 --shape X.png",
+                                   "gradients X.png out.png",
+                                   "gradients in.png out.exr --operator taps:X.json",
+                                   "mips X.png out.ktx2",
+                                   "mips X.ktx2 out.dds",
+                                   "mips X.ktx2 out.dds --keep-levels",
+                                   "mips in.png out.ktx2 --filter X.json",
+                                   "mips in.png out.ktx2 --role roughness --normal X.png",
+                                   "mips --batch pictures out --rules X.json",
+                                   "compare X.png in.png",
+                                   "compare in.png X.png",
+                                   "analyze X.json",
+                                   "info X.png",
+                                   "info X.ktx2"})
         for (const std::string& kind : kinds) {
             std::string words = line;
             for (std::size_t at = 0; (at = words.find('X', at)) != words.npos;) words.replace(at, 1, kind);

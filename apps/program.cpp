@@ -28,6 +28,7 @@ void add_verbs(Program& program) {
     add_resize(program);
     add_convolve(program);
     add_bokeh(program);
+    add_gradients(program);
     add_mips(program);
     add_pattern(program);
     add_supersample(program);

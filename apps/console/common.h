@@ -37,6 +37,7 @@ void add_info(Program& program);
 void add_resize(Program& program);
 void add_convolve(Program& program);
 void add_bokeh(Program& program);
+void add_gradients(Program& program);
 void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_supersample(Program& program);
