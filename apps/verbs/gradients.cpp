@@ -17,7 +17,7 @@ struct Options {
     std::optional<Edge> edge;
     std::optional<double> sigma, height;
     std::optional<int> box;
-    std::string coherence, convention;
+    std::string coherence, convention, measure;
 
     bool has_window() const {
         return job.options.result == GradientResult::tensor || job.options.result == GradientResult::coherence;
@@ -51,6 +51,8 @@ job::GradientJob job_of(const Options& o) {
     job.options.height = o.height.value_or(1);
     job.options.convention =
         choice("--convention", o.convention, "opengl", "directx", NormalConvention::opengl, NormalConvention::directx);
+    job.of_corners.measure = choice("--measure", o.measure, "shi-tomasi", "harris", CornerOptions::Measure::shi_tomasi,
+                                    CornerOptions::Measure::harris);
     return job;
 }
 
@@ -84,6 +86,7 @@ ordered_json json_of(const Options& o, const job::GradientJob& job, const job::G
         report["scale"] = job.options.height;
         report["convention"] = job.options.convention == NormalConvention::opengl ? "opengl" : "directx";
     }
+    if (r.corners) report["corners"] = {{"file", job.corners}, {"found", *r.corners}};
     report["space"] = name_of(job.files.space);
     report["alpha"] = job.files.premultiplies() ? "premultiply" : "straight";
     report["threads"] = o.pictures.parallel.count();
@@ -98,6 +101,7 @@ void run(const Options& o, Console& console) {
     if (o.pictures.json) return console.print_json(json_of(o, job, r));
     console.print("gradients: {} by {}, {:.3g} Mpixel/s\n", name_of(job.options.result), job.derivative,
                   double(r.input.width) * r.input.height / 1e6 / std::max(r.seconds.filter, 1e-9));
+    if (r.corners) console.print("{}: {} corners\n", job.corners, *r.corners);
 }
 
 void add_result_options(Verb verb, const std::shared_ptr<Options>& o) {
@@ -118,6 +122,22 @@ void add_result_options(Verb verb, const std::shared_ptr<Options>& o) {
     verb.add_option("--convention", o->convention,
                     "Green of normals: opengl (default) grows where the surface looks up, directx down")
         .type_name("opengl|directx");
+}
+
+void add_corner_options(Verb verb, Options& o) {
+    Option const corners =
+        verb.add_option("--corners", o.job.corners,
+                        "Write the input's corners too, to a fraction of a pixel, the strongest first: .csv or .json.\n"
+                        "The first pixel has its middle at 0.5, 0.5")
+            .type_name("FILE");
+    verb.add_option("--measure", o.measure, "Of corners: shi-tomasi (default), the smaller eigenvalue, or harris")
+        .needs(corners)
+        .type_name("shi-tomasi|harris");
+    verb.add_option("--least", o.job.of_corners.least,
+                    "Share of the strongest corner that others must have (default 0.05)")
+        .in_range(0.0, 1.0)
+        .needs(corners)
+        .type_name("S");
 }
 
 }  // namespace
@@ -144,6 +164,7 @@ void add_gradients(Program& program) {
             "value: a Laplacian with its sign")
         .type_name("R");
     add_result_options(verb, o);
+    add_corner_options(verb, *o);
     add_edge(verb, o->edge)
         .description("What lies outside the image; reflect (the default) repeats the border sample")
         .type_name("clamp|reflect|wrap|zero");

@@ -95,6 +95,31 @@ TEST(GradientsVerb, NormalsTakeCodesAsHeights) {
     EXPECT_EQ(codes.view()(20, 15, 1), std::lround((1 - y / length) / 2 * 255));
 }
 
+TEST(GradientsVerb, CornersOfASquareAreWritten) {
+    const Shell shell(BANDLIMIT_PROGRAM);
+    AnyImage square = image_of<std::uint8_t>(
+        48, 40, 1, [](int x, int y, int) { return x >= 14 && x < 34 && y >= 10 && y < 30 ? 255 : 0; });
+    save(shell / "in.png", square);
+    for (const std::string measure : {"shi-tomasi", "harris"}) {
+        const Outcome run = shell("gradients in.png out.png --corners corners.json --json --measure " + measure);
+        ASSERT_TRUE(succeeds(run));
+        EXPECT_EQ(run.json()["corners"]["found"], 4);
+        const nlohmann::json corners = nlohmann::json::parse(bytes_of(shell / "corners.json"))["corners"];
+        ASSERT_EQ(corners.size(), 4u);
+        for (const nlohmann::json& c : corners) {
+            const double x = c["x"], y = c["y"];
+            EXPECT_NEAR(std::abs(x - 24), 10, 0.03) << measure;
+            EXPECT_NEAR(std::abs(y - 20), 10, 0.03) << measure;
+        }
+    }
+    ASSERT_TRUE(succeeds(shell("gradients in.png out.png --corners corners.csv --least 0.5")));
+    const std::string csv = bytes_of(shell / "corners.csv");
+    EXPECT_TRUE(csv.starts_with("x,y,strength\n"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+    EXPECT_TRUE(fails(2, shell("gradients in.png out.png --corners corners.txt"), ".json"));
+    EXPECT_TRUE(fails(2, shell("gradients in.png out.png --measure harris"), "--corners"));
+}
+
 TEST(GradientsVerb, AlphaIsNoObstacle) {
     const Shell shell(BANDLIMIT_PROGRAM);
     AnyImage image = noise(Depth::u8, 20, 16, 4);

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "bandlimit/io/atomic_file.h"
 #include "bandlimit/io/taps_json.h"
 #include "bandlimit/job/channels.h"
 #include "bandlimit/job/option_error.h"
+#include "bandlimit/job/pictures.h"
 
 namespace bandlimit::job {
 namespace {
@@ -67,6 +70,32 @@ void note_gain(const DerivativeOperator& derivative, const Context& context) {
             fmt::format("a ramp of slope 1 has the gradient {:.3f} by these taps, which run as they are", gain));
 }
 
+bool is_csv(const std::string& path) { return path.ends_with(".csv"); }
+
+std::string text_of(const std::vector<Corner>& corners, bool as_csv) {
+    if (as_csv) {
+        std::string text = "x,y,strength\n";
+        for (const Corner& c : corners) text += fmt::format("{:.4f},{:.4f},{:.6g}\n", c.x, c.y, c.strength);
+        return text;
+    }
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const Corner& c : corners) all.push_back({{"x", c.x}, {"y", c.y}, {"strength", c.strength}});
+    return nlohmann::ordered_json{{"corners", all}}.dump(1) + "\n";
+}
+
+/// Of the input, whole, in the values that its space gives.
+int write_corners(const GradientJob& job, const Context& context) {
+    const Image<float> picture = read_picture(job.files.in, job.files.space, context.parallel);
+    CornerOptions options = job.of_corners;
+    options.edge = job.options.edge;
+    const std::vector<Corner> corners = find_corners(picture.view(), options, context.parallel);
+    const std::string text = text_of(corners, is_csv(job.corners));
+    AtomicFile file(job.corners);
+    file.write(text.data(), text.size());
+    file.commit();
+    return static_cast<int>(corners.size());
+}
+
 }  // namespace
 
 void check(const GradientJob& job) {
@@ -74,6 +103,8 @@ void check(const GradientJob& job) {
         throw OptionError("edge",
                           "renormalize: weights of derivatives sum to 0, which nothing can be rescaled to; choose "
                           "clamp, reflect, wrap or zero");
+    if (!job.corners.empty() && !is_csv(job.corners) && !job.corners.ends_with(".json"))
+        throw OptionError("corners", job.corners + ": is neither a .csv nor a .json; name one of these");
     check_result(is_taps(job) ? DerivativeOperator(Gradient{}) : parse_derivative(job.derivative), job);
 }
 
@@ -96,6 +127,7 @@ GradientReport gradients(const GradientJob& job, const Context& context) {
     const bool has_own_channels = !has_source_units(options.result);
     static_cast<PictureReport&>(report) = filter_picture(files, has_own_channels, context, make);
     note_lost_signs(job, report.output, context);
+    if (!job.corners.empty()) report.corners = write_corners(job, context);
     return report;
 }
 
