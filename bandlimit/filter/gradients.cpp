@@ -186,11 +186,11 @@ int field_count(GradientResult result, int channels) {
 void store_direction(const float* fields, int channels, float* to) {
     double x = 0, y = 0, most = -1;
     for (int c = 0; c < channels; ++c) {
-        const double u = number(fields[c]), v = number(fields[channels + c]), length = std::hypot(u, v);
-        if (length > most || std::isnan(length)) x = u, y = v, most = length;  // one that is NaN stays
+        const double u = number(fields[c]), v = number(fields[channels + c]), square = u * u + v * v;
+        if (square > most || std::isnan(square)) x = u, y = v, most = square;  // one that is NaN stays
     }
     const double turns = std::atan2(y, x) / (2 * std::numbers::pi);
-    const auto rgb = hsv(turns < 0 ? turns + 1 : turns, std::min(most, 1.0));
+    const auto rgb = hsv(turns < 0 ? turns + 1 : turns, std::min(std::sqrt(most), 1.0));
     std::copy(rgb.begin(), rgb.end(), to);
 }
 

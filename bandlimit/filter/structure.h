@@ -12,6 +12,8 @@ struct StructureTensor {
 
     double trace() const { return xx + yy; }
     double determinant() const { return xx * yy - xy * xy; }
+    /// Half of the difference of the eigenvalues. Of floats, no square leaves the range of doubles.
+    double half_gap() const { return std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy); }
 };
 
 /// Eigenvalues, the larger one first; of gradients, none is below 0.
@@ -21,7 +23,7 @@ struct Eigenvalues {
 
 /// Closed form. The smaller one is the determinant over the larger one, which loses less than a difference.
 inline Eigenvalues eigenvalues(const StructureTensor& t) {
-    const double larger = t.trace() / 2 + std::hypot((t.xx - t.yy) / 2, t.xy);
+    const double larger = t.trace() / 2 + t.half_gap();
     if (larger == 0) return {};
     return {larger, std::clamp(t.determinant() / larger, 0.0, larger)};
 }
@@ -44,7 +46,7 @@ enum class Coherence {
 inline double coherence_of(const StructureTensor& t, Coherence definition = Coherence::difference) {
     if (t.trace() == 0) return 0;
     if (definition == Coherence::difference)
-        return std::clamp(2 * std::hypot((t.xx - t.yy) / 2, t.xy) / t.trace(), 0.0, 1.0);
+        return std::clamp(2 * t.half_gap() / t.trace(), 0.0, 1.0);
     const Eigenvalues l = eigenvalues(t);
     const double a = std::sqrt(l.larger), b = std::sqrt(l.smaller);
     return std::clamp((a - b) / (a + b), 0.0, 1.0);

@@ -110,6 +110,7 @@ void check(const GradientJob& job) {
 
 GradientReport gradients(const GradientJob& job, const Context& context) {
     check(job);
+    if (!job.corners.empty()) check_output_path(job.corners);
     const PictureFiles files = files_of(job);
     GradientReport report;
     GradientOptions options = job.options;
