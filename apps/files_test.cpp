@@ -46,6 +46,8 @@ TEST(Files, EveryVerbRefusesToReadWhatIsNoRegularFile) {
                                    "bilateral X.png out.png --sigma-space 1 --sigma-range 1",
                                    "bilateral in.png out.png --sigma-space 1 --sigma-range 1 --guide X.png",
                                    "bilateral in.png out.png --sigma-space 1 --sigma-range 1 --guide-full X.png",
+                                   "gradients X.png out.png",
+                                   "gradients in.png out.exr --operator taps:X.json",
                                    "mips X.png out.ktx2",
                                    "mips X.ktx2 out.dds",
                                    "mips X.ktx2 out.dds --keep-levels",

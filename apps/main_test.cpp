@@ -10,8 +10,8 @@ namespace {
 
 const std::array kinds{"zoneplate", "siemens", "chirp", "edge",  "stripes", "checker", "box",   "disc",      "ramp",
                        "impulse",   "line",    "noise", "fence", "glyphs",  "plane",   "mover", "highlight", "foliage"};
-const std::array verbs{"resize",   "convolve", "bokeh",   "bilateral", "guided", "mips", "pattern", "supersample",
-                       "temporal", "raster",   "compare", "analyze",   "audit",  "info", "tour"};
+const std::array verbs{"resize",      "convolve", "bokeh",  "bilateral", "guided",  "gradients", "mips", "pattern",
+                       "supersample", "temporal", "raster", "compare",   "analyze", "audit",     "info", "tour"};
 
 /// A folder in which examples work as pasted.
 void add_examples(const Shell& shell) {
@@ -28,7 +28,8 @@ TEST(CommandLine, WhatItAloneShowsToBeWrongIsExitCode2) {
     };
     for (const auto& [line, word] : {
              Case{"",
-                  "resize, convolve, bokeh, bilateral, guided, mips, pattern, supersample, temporal, raster, compare, "
+                  "resize, convolve, bokeh, bilateral, guided, gradients, mips, pattern, supersample, temporal, "
+                  "raster, compare, "
                   "analyze, "
                   "design, "
                   "audit, "

@@ -30,6 +30,7 @@ void add_verbs(Program& program) {
     add_bokeh(program);
     add_bilateral(program);
     add_guided(program);
+    add_gradients(program);
     add_mips(program);
     add_pattern(program);
     add_supersample(program);

@@ -39,6 +39,7 @@ void add_convolve(Program& program);
 void add_bokeh(Program& program);
 void add_bilateral(Program& program);
 void add_guided(Program& program);
+void add_gradients(Program& program);
 void add_mips(Program& program);
 void add_pattern(Program& program);
 void add_supersample(Program& program);

@@ -45,6 +45,14 @@ void add_output(Program& program, Verb verb, PictureOptions& o) {
     program.add_quiet(verb);
 }
 
+ordered_json file_json(const std::string& file, const job::PictureSummary& picture) {
+    return {{"file", file},
+            {"width", picture.width},
+            {"height", picture.height},
+            {"channels", picture.channels},
+            {"depth", name_of(picture.depth)}};
+}
+
 void check_pictures(const PictureOptions& o) { check_output_format(o.files.out, o.files.depth, o.files.tile); }
 
 void add_weight_options(Verb verb, WeightChoice& weights) {
@@ -67,12 +75,7 @@ void print_report(Console& console, const std::string& verb, const PictureOption
         return;
     }
     ordered_json report{
-        {"input",
-         {{"file", o.files.in},
-          {"width", r.input.width},
-          {"height", r.input.height},
-          {"channels", r.input.channels},
-          {"depth", name_of(r.input.depth)}}},
+        {"input", file_json(o.files.in, r.input)},
         {"output", {{"file", o.files.out}, {"channels", r.output.channels}, {"depth", name_of(r.output.depth)}}},
         {"weights", {{"of", r.name}, {"width", r.size.width}, {"height", r.size.height}}},
         {"sum", r.sum},

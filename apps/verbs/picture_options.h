@@ -24,6 +24,9 @@ void add_output(Program& program, Verb verb, PictureOptions& o);
 /// Throws UsageError for what the command line alone shows to be wrong.
 void check_pictures(const PictureOptions& o);
 
+/// A file and the picture in it, for reports.
+nlohmann::ordered_json file_json(const std::string& file, const job::PictureSummary& picture);
+
 /// How weights are to run.
 struct WeightChoice {
     job::WeightOptions given;

@@ -62,18 +62,10 @@ job::ResizeJob job_of(const Options& o) {
     return job;
 }
 
-nlohmann::ordered_json json_of(const std::string& file, const job::PictureSummary& picture) {
-    return {{"file", file},
-            {"width", picture.width},
-            {"height", picture.height},
-            {"channels", picture.channels},
-            {"depth", name_of(picture.depth)}};
-}
-
 nlohmann::ordered_json json_of(const Options& o, const job::ResizeReport& r) {
     const job::PictureFiles& files = o.pictures.files;
-    return {{"input", json_of(files.in, r.input)},
-            {"output", json_of(files.out, r.output)},
+    return {{"input", file_json(files.in, r.input)},
+            {"output", file_json(files.out, r.output)},
             {"kernel", {{"x", r.kernel_x}, {"y", r.kernel_y}}},
             {"edge", name_of(r.edge)},
             {"align", o.job.align == job::Align::centers ? "centers" : "corners"},

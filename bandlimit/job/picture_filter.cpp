@@ -40,6 +40,8 @@ ImageTarget target_of(const PictureFiles& files, const ImageReader& reader, cons
                        files.space == Space::data,
                        &reader.metadata(),
                        files.tile};
+    if (filter.makes_data) target.transfer = Transfer::linear, target.is_data = true;
+    if (!filter.channel_names.empty()) target.channel_names = filter.channel_names, target.alpha = -1;
     if (!filter.background.empty()) {
         target.channel_names.erase(target.channel_names.begin() + in.alpha);
         target.alpha = -1;

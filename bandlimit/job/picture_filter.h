@@ -40,7 +40,8 @@ struct PictureReport {
     } seconds;
 };
 
-/// Reads, filters and writes. `make` sees what is to be filtered. `lies_over` says that a picture with alpha gets a background.
+/// Reads, filters and writes. `make` sees what is to be filtered. `lies_over` says that a picture with alpha gets a background, or
+/// channels of its own.
 ///
 /// notes    a profile that is not sRGB; values that were not finite
 /// throws   std::runtime_error for files, and where the output cannot hold alpha; what `make` throws; Stopped. The

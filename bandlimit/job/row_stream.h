@@ -24,6 +24,9 @@ struct PictureFilter {
     std::vector<float> background = {};  ///< in linear light; if not empty, the picture is laid over it and loses alpha
     /// Of a band, where memory allows it: each band does anew what its first rows share with the last.
     int least_rows = 64;
+    /// Of the output, where they are not those of the input; none of them is alpha.
+    std::vector<std::string> channel_names = {};
+    bool makes_data = false;  ///< what comes out is no colour: it is stored as it is
 };
 
 /// Takes all rows of `reader`, whose codes mean `from`, through `filter` into `writer`, where they shall mean `to`.

@@ -47,12 +47,14 @@ void RowFilter::check_source(const SourceRows& source, std::size_t i, const Targ
     const RowProtocol& p = *protocol_;
     const ViewShape from = shape_of(source.samples), to = shape_of(target.samples);
     const bool has_background = !target.background.empty();
-    const int channels = p.channels > 0 ? p.channels : to.channels + has_background;
+    const bool has_own_channels = p.target_channels > 0;
+    const int channels = p.channels > 0 ? p.channels : has_own_channels ? from.channels : to.channels + has_background;
+    const int target_channels = has_own_channels ? p.target_channels : channels - has_background;
     if (from.width != p.sources[i].width || to.width != p.width || from.channels != channels ||
-        to.channels != channels - has_background || to.channels < 1)
+        to.channels != target_channels || to.channels < 1 || (has_own_channels && has_background))
         fail(p.name, "::run: source ", from.width, " wide with ", from.channels, " channels, target ", to.width,
              " with ", to.channels, "; need ", p.sources[i].width, " with ", channels, " and ", p.width, " with ",
-             channels - has_background);
+             target_channels);
     const std::string run = p.name + "::run";
     check_encoding(run.c_str(), source.encoding, from.channels);
     check_apart(run.c_str(), source.samples, target.samples);

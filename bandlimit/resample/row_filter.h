@@ -101,6 +101,7 @@ struct RowProtocol {
     std::vector<Source> sources;  ///< one for most filters
     int width = 0, height = 0;    ///< of the output
     int channels = 0;             ///< of sources, and of the output without a background; 0: any number
+    int target_channels = 0;      ///< of the output, where it has not those of the sources; it has no background then
     /// The rows of a source that output rows [first, last) are made of; they may lie outside it.
     std::function<IndexRange(std::size_t source, int first, int last)> rows_read;
     /// About how much memory a run takes, in bytes.
