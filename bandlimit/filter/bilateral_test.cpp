@@ -69,12 +69,17 @@ double weight_of(double d, double sigma) {
     return sigma == 0 ? 0 : std::exp(-d * d / (2 * sigma * sigma));
 }
 
+/// How far a window reaches.
+struct Reach {
+    int x, y;
+};
+
 /// An output from the definition, in double.
-double expected(const Image<float>& signal, const Image<float>& guide, const BilateralOptions& o, int x, int y, int c) {
-    const int radius = bilateral_radius(o);
+double expected(const Image<float>& signal, const Image<float>& guide, const BilateralOptions& o, Reach reach, int x,
+                int y, int c) {
     double weights = 0, sum = 0;
-    for (int j = -radius; j <= radius; ++j)
-        for (int i = -radius; i <= radius; ++i) {
+    for (int j = -reach.y; j <= reach.y; ++j)
+        for (int i = -reach.x; i <= reach.x; ++i) {
             const int u = resolve(x + i, signal.width(), o.edge_x), v = resolve(y + j, signal.height(), o.edge_y);
             const bool is_zero = u < 0 || v < 0;
             if (is_zero && (u < 0 ? o.edge_x : o.edge_y) == Edge::renormalize) continue;
@@ -94,9 +99,14 @@ double expected(const Image<float>& signal, const Image<float>& guide, const Bil
     return sum / weights;
 }
 
-Image<float> expected(const Image<float>& signal, const Image<float>& guide, const BilateralOptions& o) {
+Image<float> expected(const Image<float>& signal, const Image<float>& guide, const BilateralOptions& o, Reach reach) {
     return picture(signal.width(), signal.height(), signal.channels(),
-                   [&](int x, int y, int c) { return expected(signal, guide, o, x, y, c); });
+                   [&](int x, int y, int c) { return expected(signal, guide, o, reach, x, y, c); });
+}
+Image<float> expected(const Image<float>& signal, const Image<float>& guide, const BilateralOptions& o) {
+    const int radius = bilateral_radius(o);
+    if (!o.separable) return expected(signal, guide, o, {radius, radius});
+    return expected(expected(signal, guide, o, {radius, 0}), guide, o, {0, radius});
 }
 
 TEST(Falloff, IsAPowerOfTwo) {
@@ -124,6 +134,27 @@ TEST(Bilateral, IsItsDefinition) {
     const Image<float> image = noise(21, 17, 3, 3);
     const BilateralOptions o{.sigma_space = 2, .sigma_range = {0.2}, .radius = 3};
     expect_near(bilateral(image.view(), o), expected(image, image, o), 2e-6);
+}
+
+TEST(Bilateral, WindowsMayBeLargerThanThePicture) {
+    for (const int width : {1, 5})
+        for (const bool separable : {false, true}) {
+            const Image<float> signal = noise(width, 4, 2, 1), guide = noise(width, 4, 1, 2);
+            BilateralOptions o{.sigma_space = 4, .sigma_range = {0.3}, .radius = 11, .separable = separable};
+            for (const Edge edge : all_edges()) {
+                o.edge_x = o.edge_y = edge;
+                expect_near(joint_bilateral(signal.view(), guide.view(), o), expected(signal, guide, o), 2e-6);
+            }
+        }
+}
+
+TEST(Bilateral, SeparableIsAPassAlongEachAxis) {
+    const Image<float> signal = noise(26, 19, 2, 1), guide = noise(26, 19, 3, 2);
+    BilateralOptions o{.sigma_space = 1.5, .sigma_range = {0.3, 0.5, 0.7}, .separable = true};
+    for (const Edge edge : all_edges()) {
+        o.edge_x = o.edge_y = edge;
+        expect_near(joint_bilateral(signal.view(), guide.view(), o), expected(signal, guide, o), 3e-6);
+    }
 }
 
 TEST(Bilateral, VectorsHaveTheBitsOfTheDefinition) {
