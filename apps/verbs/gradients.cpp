@@ -107,10 +107,10 @@ void run(const Options& o, Console& console) {
 void add_result_options(Verb verb, const std::shared_ptr<Options>& o) {
     Option const sigma =
         verb.add_option("--sigma", o->sigma, "Sigma of the tensor's Gaussian window, in pixels (default 1.5)")
-            .in_range(0.1, 250.0)
+            .in_range(0.1, 50.0)
             .type_name("S");
     verb.add_option("--box", o->box, "A window of (2 R + 1) x (2 R + 1) equal weights instead")
-        .in_range(0, 1000)
+        .in_range(0, 200)
         .excludes(sigma)
         .type_name("R");
     verb.add_option("--coherence", o->coherence,

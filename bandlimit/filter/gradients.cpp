@@ -132,9 +132,8 @@ Chain laplacian_chain(const Laplacian& laplacian, const Domain& d) {
 std::array<float, 3> hsv(double hue, double saturation) {
     std::array<float, 3> rgb{};
     for (std::size_t c = 0; c < 3; ++c) {
-        const double place =
-            std::fmod(hue - static_cast<double>(c) / 3 + 1.5, 1.0) - 0.5;  // -1/2 to 1/2, 0 at the peak
-        const double colour = std::clamp(2 - 6 * std::abs(place), 0.0, 1.0);
+        const double turns = std::abs(hue - static_cast<double>(c) / 3), from_peak = std::min(turns, 1 - turns);
+        const double colour = std::clamp(2 - 6 * from_peak, 0.0, 1.0);
         rgb[c] = static_cast<float>(1 - saturation * (1 - colour));
     }
     return rgb;
@@ -231,7 +230,10 @@ void store(const GradientOptions& o, const float* fields, int channels, bool is_
 class GradientPlan {
 public:
     GradientPlan(const DerivativeOperator& derivative, int width, int height, GradientOptions options)
-        : options_(std::move(options)), width_(width), is_laplacian_(std::holds_alternative<Laplacian>(derivative)) {
+        : options_(std::move(options)),
+          width_(width),
+          height_(height),
+          is_laplacian_(std::holds_alternative<Laplacian>(derivative)) {
         Domain domain{width, height, options_.edge, options_.premultiply};
         if (is_laplacian_) {
             x_ = laplacian_chain(std::get<Laplacian>(derivative), domain);
@@ -247,7 +249,7 @@ public:
         }
         if (options_.result != dy) x_ = derivative_chain(gradient, true, domain);
         if (options_.result != dx) y_ = derivative_chain(gradient, false, domain);
-        block_ = std::max(block_, 4 * padding_);
+        block_ = std::max(block_, padding_);
     }
 
     IndexRange rows_read(int first, int last) const {
@@ -261,7 +263,7 @@ public:
     }
 
     double bytes(int channels, const Parallel& parallel) const {
-        const double samples = double(width_ + padding_) * (block_ + padding_);
+        const double samples = double(width_ + padding_) * (std::min(block_, height_) + padding_);
         const double held = samples * sizeof(float) * (5 * channels + 2 * field_count(options_.result, channels));
         const double engine =
             x_.bytes(channels) + y_.bytes(channels) + (window_ ? static_cast<double>(window_->bytes(3, {1})) : 0.0);
@@ -326,7 +328,8 @@ private:
     }
 
     GradientOptions options_;
-    int width_, padding_ = 0, block_ = 32;
+    int width_, height_, padding_ = 0;
+    int block_ = 48;  ///< rows at a time: with the rows that windows read besides, they are made anew by each
     bool is_laplacian_;
     Chain x_, y_;                      ///< of a Laplacian, x_ alone
     std::optional<RowFilter> window_;  ///< over fields

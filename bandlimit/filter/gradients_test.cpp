@@ -334,7 +334,7 @@ TEST(Gradients, DirectionsAreHues) {
     for (const double degrees : {0.0, 60.0, 120.0, 180.0, 210.0, 300.0}) {
         const double u = std::cos(degrees * pi / 180), v = std::sin(degrees * pi / 180);
         const Image<float> ramp =
-            picture(9, 9, 2, [=](int x, int y, int c) { return c == 0 ? 0.1 * x : (x * u + y * v) / 2; });
+            picture(9, 9, 3, [=](int x, int y, int c) { return c == 1 ? (x * u + y * v) / 2 : 0.1 * x; });
         const Image<float> rgb = run(ramp, "scharr", GradientResult::direction);
         const double peak = degrees / 120;  // 0 red, 1 green, 2 blue
         for (int c = 0; c < 3; ++c) {

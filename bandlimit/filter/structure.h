@@ -45,8 +45,7 @@ enum class Coherence {
 /// In [0, 1], also after rounding.
 inline double coherence_of(const StructureTensor& t, Coherence definition = Coherence::difference) {
     if (t.trace() == 0) return 0;
-    if (definition == Coherence::difference)
-        return std::clamp(2 * t.half_gap() / t.trace(), 0.0, 1.0);
+    if (definition == Coherence::difference) return std::clamp(2 * t.half_gap() / t.trace(), 0.0, 1.0);
     const Eigenvalues l = eigenvalues(t);
     const double a = std::sqrt(l.larger), b = std::sqrt(l.smaller);
     return std::clamp((a - b) / (a + b), 0.0, 1.0);
