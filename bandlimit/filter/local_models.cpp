@@ -61,25 +61,28 @@ void put(float* const* rows, View<float> to, int first_x, int y) {
 class Weights {
 public:
     explicit Weights(const BoxWindow& window)
-        : x_(window_counts(window.width, window.radius, window.edge)),
+        : width_(static_cast<std::size_t>(window.width)),
+          x_(window_counts(window.width, window.radius, window.edge)),
           y_(window_counts(window.height, window.radius, window.edge)),
           inside_x_(window_counts(window.width, window.radius, Edge::renormalize)),
           inside_y_(window_counts(window.height, window.radius, Edge::renormalize)),
-          adds_zeros_(window.edge == Edge::zero) {}
+          adds_zeros_(window.edge == Edge::zero) {
+        x_.resize((x_.size() / window_group + 1) * window_group, 1.0);
+    }
 
     /// Of row y; `counted` are the sums of the weights of what is stored, null where all are 1.
     std::vector<double> row(int y, const double* counted) const {
-        std::vector<double> row((x_.size() / window_group + 1) * window_group, 1.0);
+        std::vector<double> row(x_.size());
         const auto v = static_cast<std::size_t>(y);
-        for (std::size_t x = 0; x < x_.size(); ++x) {
-            row[x] = x_[x] * y_[v];
-            if (counted != nullptr) row[x] = counted[x] + (adds_zeros_ ? row[x] - inside_x_[x] * inside_y_[v] : 0);
-        }
+        scale_row(x_.data(), y_[v], row.data(), static_cast<int>(row.size()));
+        for (std::size_t x = 0; counted != nullptr && x < width_; ++x)
+            row[x] = counted[x] + (adds_zeros_ ? row[x] - inside_x_[x] * inside_y_[v] : 0);
         return row;
     }
 
 private:
-    std::vector<double> x_, y_, inside_x_, inside_y_;
+    std::size_t width_;
+    std::vector<double> x_, y_, inside_x_, inside_y_;  // x_ with room for a multiple of window_group
     bool adds_zeros_;
 };
 

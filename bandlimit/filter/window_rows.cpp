@@ -75,8 +75,10 @@ HWY_INLINE void Transpose(Fours* v) {
 
 /// Sample x of four rows.
 HWY_INLINE Fours ColumnAt(const double* const* rows, int x) {
-    const double column[4] = {rows[0][x], rows[1][x], rows[2][x], rows[3][x]};
-    return hn::LoadU(Four(), column);
+    const Four d;
+    const Fours low = hn::InterleaveLower(d, hn::Set(d, rows[0][x]), hn::Set(d, rows[1][x]));
+    const Fours high = hn::InterleaveLower(d, hn::Set(d, rows[2][x]), hn::Set(d, rows[3][x]));
+    return hn::ConcatUpperLower(d, high, low);
 }
 
 /// Four samples of four rows, as columns.
@@ -165,6 +167,12 @@ void MultiplyRows(const double* a, const double* b, double* to, int count) {
     const D d;
     for (int x = 0; x < count; x += static_cast<int>(hn::Lanes(d)))
         hn::StoreU(hn::Mul(hn::LoadU(d, a + x), hn::LoadU(d, b + x)), d, to + x);
+}
+
+void ScaleRow(const double* from, double factor, double* to, int count) {
+    const D d;
+    for (int x = 0; x < count; x += static_cast<int>(hn::Lanes(d)))
+        hn::StoreU(hn::Mul(hn::LoadU(d, from + x), hn::Set(d, factor)), d, to + x);
 }
 
 void RecentreRow(const float* from, double offset, double* to, int count) {
@@ -298,6 +306,7 @@ namespace bandlimit {
 BANDLIMIT_EXPORT(SlideRow);
 BANDLIMIT_EXPORT(SumBlocks);
 BANDLIMIT_EXPORT(MultiplyRows);
+BANDLIMIT_EXPORT(ScaleRow);
 BANDLIMIT_EXPORT(RecentreRow);
 BANDLIMIT_EXPORT(Widen);
 BANDLIMIT_EXPORT(SolveLinearRow);
@@ -310,6 +319,9 @@ void sum_blocks(int rows, const double* const* in, double* const* out, int lengt
 }
 void multiply_rows(const double* a, const double* b, double* to, int count) {
     BANDLIMIT_DISPATCH(MultiplyRows)(a, b, to, count);
+}
+void scale_row(const double* from, double factor, double* to, int count) {
+    BANDLIMIT_DISPATCH(ScaleRow)(from, factor, to, count);
 }
 void recentre_row(const float* from, double offset, double* to, int count) {
     BANDLIMIT_DISPATCH(RecentreRow)(from, offset, to, count);

@@ -22,6 +22,9 @@ void sum_blocks(int rows, const double* const* in, double* const* out, int lengt
 /// to = a b.
 void multiply_rows(const double* a, const double* b, double* to, int count);
 
+/// to = factor from.
+void scale_row(const double* from, double factor, double* to, int count);
+
 /// to = from - offset.
 void recentre_row(const float* from, double offset, double* to, int count);
 

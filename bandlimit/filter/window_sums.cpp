@@ -56,7 +56,7 @@ public:
           begins_anew_(padded(window.width) / group) {}
 
     void run(IndexRange rows, const TakeSums& take) {
-        for (int g = 0; g * group < window_.width; ++g) begin_anew(rows.begin, g);
+        begin(rows.begin);
         for (int y = rows.begin; y < rows.end; ++y) {
             if (y > rows.begin) slide(y);
             sum_along_x();
@@ -67,7 +67,19 @@ public:
 private:
     int stored_row(int y) const { return resolve(y, window_.height, window_.edge); }
 
-    /// The columns of a group, from the rows of the window about row y.
+    /// All columns, from the rows of the window about row y.
+    void begin(int y) {
+        for (int p = 0; p < planes_; ++p) std::fill_n(columns_[p], window_.width, 0.0);
+        for (int v = y - ry_; v <= y + ry_; ++v) {
+            const int row = stored_row(v);
+            if (row < 0) continue;
+            fill_(row, {0, window_.width}, entering_.get());
+            for (int p = 0; p < planes_; ++p)
+                slide_row(columns_[p], entering_[p], nullptr, window_.width, begins_anew_.data());
+        }
+    }
+
+    /// The columns of a group, from the same, with the same bits.
     void begin_anew(int y, int g) {
         const IndexRange xs{g * group, std::min(window_.width, (g + 1) * group)};
         for (int p = 0; p < planes_; ++p) std::fill_n(columns_[p] + xs.begin, xs.count(), 0.0);
