@@ -113,7 +113,10 @@ TEST(Parallel, StopsBetweenRangesWhenAsked) {
             std::atomic<int> done{0};
             EXPECT_THROW(parallel_for(1000, 1, {threads, runner, user.get_token()},
                                       [&](std::ptrdiff_t, std::ptrdiff_t) {
-                                          if (++done == 10) user.request_stop();
+                                          const int now = ++done;
+                                          if (now == 10) user.request_stop();
+                                          // The thread that asks may be slow to do so: nobody runs on until then.
+                                          while (now > 10 && !user.stop_requested()) std::this_thread::yield();
                                       }),
                          Stopped);
             EXPECT_LT(done, 10 + 2 * threads);
