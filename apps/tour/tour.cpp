@@ -49,8 +49,8 @@ void run(const Options& options, Console& console) {
                      "plate.exr box.png --scale 0.5 --kernel box --edge reflect",
                      784);
     using Part = void (*)(Tour&);
-    const Part parts[] = {tour_lanczos, tour_grids,         tour_splines,  tour_images, tour_mips,
-                          tour_design,  tour_supersampling, tour_temporal, tour_raster, tour_audit};
+    const Part parts[] = {tour_lanczos,       tour_grids,    tour_splines, tour_images,    tour_mips, tour_design,
+                          tour_supersampling, tour_temporal, tour_raster,  tour_gradients, tour_audit};
     Progress progress(console, "tour", std::size(parts));
     for (std::size_t i = 0; i < std::size(parts); ++i) {
         parts[i](tour);

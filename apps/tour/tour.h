@@ -34,5 +34,6 @@ void tour_design(Tour& tour);         ///< designed filters: few reads, low rank
 void tour_supersampling(Tour& tour);  ///< aliasing, patterns of samples, half of the samples
 void tour_temporal(Tour& tour);       ///< accumulation over time, at 1x and 2x
 void tour_raster(Tour& tour);         ///< prefiltered points, lines and discs, seams
+void tour_gradients(Tour& tour);      ///< gradients and structure tensors
 
 }  // namespace bandlimit::app
