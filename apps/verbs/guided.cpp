@@ -33,18 +33,10 @@ double parse_epsilon(const std::string& text) {
     return value;
 }
 
-nlohmann::ordered_json json_of(const std::string& file, const job::PictureSummary& picture) {
-    return {{"file", file},
-            {"width", picture.width},
-            {"height", picture.height},
-            {"channels", picture.channels},
-            {"depth", name_of(picture.depth)}};
-}
-
 nlohmann::ordered_json json_of(const Options& o, const job::GuidedJob& job, const job::GuidedReport& r, double rate) {
     const LocalModelOptions& options = job.options;
-    nlohmann::ordered_json report{{"input", json_of(job.files.in, r.input)},
-                                  {"output", json_of(job.files.out, r.output)},
+    nlohmann::ordered_json report{{"input", file_json(job.files.in, r.input)},
+                                  {"output", file_json(job.files.out, r.output)},
                                   {"guide", job.guide},
                                   {"guide_channels", r.guide_channels}};
     if (!job.full_guide.empty()) report["guide_full"] = job.full_guide;
