@@ -33,7 +33,7 @@ double parse_sigma(const std::string& option, std::string_view text) {
     double value = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (status != std::errc{} || end != text.data() + text.size() || !(value >= 0))
-        throw UsageError(fmt::format("{}: \"{}\" is no sigma; pass a number of 0 or more, or inf", option, text));
+        throw UsageError(fmt::format("{}: \"{}\" is not a sigma; pass 0 or more, or inf", option, text));
     return value;
 }
 

@@ -29,7 +29,7 @@ double parse_epsilon(const std::string& text) {
     double value = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (status != std::errc{} || end != text.data() + text.size() || !(value >= 0))
-        throw UsageError(fmt::format("--epsilon: \"{}\" is no variance; pass a number of 0 or more, or inf", text));
+        throw UsageError(fmt::format("--epsilon: \"{}\" is not a variance; pass 0 or more, or inf", text));
     return value;
 }
 

@@ -155,7 +155,7 @@ void check_output_path(const std::string& path) {
     const fs::file_status parent_status = fs::status(parent, error);
     if (!fs::exists(parent_status))
         fail_file(path, "the directory ", parent.string(), " does not exist or cannot be entered; create it first");
-    if (!fs::is_directory(parent_status)) fail_file(path, parent.string(), " is no directory; choose another place");
+    if (!fs::is_directory(parent_status)) fail_file(path, parent.string(), " is not a directory; choose another place");
     if (!may(parent, W_OK | X_OK))
         fail_file(path, "the directory ", parent.string(), " is not writable; choose another place");
 }

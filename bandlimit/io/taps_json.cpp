@@ -34,7 +34,7 @@ int integer(const json& value, int low, int high, const std::string& name, const
 
 double number(const json& value, const std::string& name, const char* what) {
     if (!value.is_number() || !std::isfinite(value.get<double>()))
-        fail_file(name, "\"", what, "\" is no finite number; correct it");
+        fail_file(name, "\"", what, "\" is not a finite number; correct it");
     return value.get<double>();
 }
 
@@ -131,7 +131,7 @@ TapsFile parse_taps(std::string_view text, const std::string& name) {
 
     TapsFile file;
     if (const auto kind = root.find("kind"); kind != root.end()) {
-        if (!kind->is_string()) fail_file(name, "\"kind\" is no text; correct it");
+        if (!kind->is_string()) fail_file(name, "\"kind\" is not a text; correct it");
         file.kind = kind->get<std::string>();
     }
     if (const auto factor = root.find("factor"); factor != root.end())

@@ -112,7 +112,7 @@ void check(const GuidedJob& job) {
     if (!(o.epsilon >= 0)) throw OptionError("epsilon", fmt::format("{} is out of range; pass 0 or more", o.epsilon));
     if (o.order != 1 && o.order != 2) throw OptionError("order", fmt::format("{} is unknown; pass 1 or 2", o.order));
     if (!job.save_models.empty() && abilities_of(job.save_models).name != "openexr")
-        throw OptionError("save-models", fmt::format("{} is no EXR file; use the extension .exr", job.save_models));
+        throw OptionError("save-models", fmt::format("{} is not an EXR file; use the extension .exr", job.save_models));
 }
 
 GuidedReport guided(const GuidedJob& job, const Context& context) {
